@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* FrameParams are copied for every chunk of items. */
-_Static_assert(sizeof(FrameParams) <= 576, "parameters that only some passes need belong in Guide");
+_Static_assert(sizeof(FrameParams) <= 1024, "parameters that only some passes need belong in Guide");
 
 struct KernelScene {
     BackendScene view;

@@ -13,6 +13,7 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/kernels_bd.c \
 	backend_cpu/kernels_caustic.c \
 	backend_cpu/kernels_mlt.c \
+	backend_cpu/kernels_opening.c \
 	backend_cpu/kernels_others.c \
 	backend_cpu/kernels_pt.c \
 	backend_cpu/plain_kernels.h \

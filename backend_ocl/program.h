@@ -14,7 +14,15 @@
 #define OCL_OPTIONS_SIZE 160
 
 /* Programs by the lists of layout/kernel_list.h. The first has what every rendering needs. */
-enum { PROGRAM_PATHS, PROGRAM_BIDIRECTIONAL, PROGRAM_IBPT, PROGRAM_CAUSTICS, PROGRAM_CHAINS, OCL_PROGRAMS };
+enum {
+    PROGRAM_PATHS,
+    PROGRAM_BIDIRECTIONAL,
+    PROGRAM_IBPT,
+    PROGRAM_CAUSTICS,
+    PROGRAM_OPENINGS,
+    PROGRAM_CHAINS,
+    OCL_PROGRAMS
+};
 
 typedef struct OclProgram {
     cl_context context;

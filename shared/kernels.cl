@@ -10,6 +10,7 @@
 #include "kernels/film_add.cl"
 #include "kernels/ibpt.cl"
 #include "kernels/mlt.cl"
+#include "kernels/opening.cl"
 #include "kernels/photon.cl"
 #include "kernels/pt.cl"
 #include "kernels/trace.cl"

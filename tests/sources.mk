@@ -25,6 +25,7 @@ check_PROGRAMS += \
 	tests/test_geometry \
 	tests/test_mmlt \
 	tests/test_numerics \
+	tests/test_openings \
 	tests/test_group \
 	tests/test_import \
 	tests/test_layers \
@@ -106,6 +107,7 @@ EXTRA_DIST += \
 	tests/support/numerics.h \
 	tests/support/opencl_probe.h \
 	tests/support/render_fixture.h \
+	tests/support/room_scene.h \
 	tests/mmlt/test_combination.h \
 	tests/geometry/test_bvh.h \
 	tests/mmlt/test_chain.h \
@@ -172,6 +174,7 @@ tests_test_restore_SOURCES = tests/render/test_restore.c
 tests_test_scenes_SOURCES = tests/render/test_scenes.c
 tests_test_shard_SOURCES = tests/render/test_shard.c
 tests_test_shift_SOURCES = tests/mmlt/test_shift.c
+tests_test_openings_SOURCES = tests/render/test_openings.c
 tests_test_tile_light_SOURCES = tests/render/test_tile_light.c
 tests_test_verify_SOURCES = tests/render/test_verify.c
 
@@ -230,6 +233,7 @@ tests_test_emit_SOURCES = tests/light/test_emit.c \
 	tests/light/test_emit_direction.c \
 	tests/light/test_emit_distance.c \
 	tests/light/test_emit_image.c \
+	tests/light/test_emit_openings.c \
 	tests/light/test_emit_power.c \
 	tests/light/test_emit_splat.c
 

@@ -58,6 +58,7 @@ static RenderOptions job_options(RenderJob *job)
         .unweighted = command->unweighted,
         .seed = command->seed,
         .photons = command->photons,
+        .no_openings = command->no_openings,
         .save_every = command->save_every,
         .checkpoint = job_checkpoint_options(command),
         .pilot = command->pilot,

@@ -56,6 +56,8 @@ static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_PHOTONS] =
         {"photons", 0, "N",
          "pt, mmlt: find caustics by at most this many photons (default: what is worth it with mmlt, else 0)"},
+    [OPTION_NO_OPENINGS] = {"no-openings", 0, NULL,
+                            "start light subpaths anywhere, even in rooms that light enters through windows alone"},
     [OPTION_MAX_DEPTH] = {"max-depth", 0, "D",
                           "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
     [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
@@ -270,6 +272,9 @@ static bool option_set(void *context, int index, const char *value, Error *error
         return !value || path_set(&command->png_path, option, value, ".png", error);
     case OPTION_NO_PNG:
         command->png = false;
+        return true;
+    case OPTION_NO_OPENINGS:
+        command->no_openings = true;
         return true;
     case OPTION_INTEGRATOR:
         command->integrator = value;

@@ -43,6 +43,7 @@ typedef struct RenderCommand {
     int threads;
     uint64_t seed;
     unsigned photons;
+    bool no_openings;
     int max_depth;
     int resolution[2];
     bool has_crop;
@@ -94,6 +95,7 @@ typedef enum RenderOption {
     OPTION_THREADS,
     OPTION_SEED,
     OPTION_PHOTONS,
+    OPTION_NO_OPENINGS,
     OPTION_MAX_DEPTH,
     OPTION_RESOLUTION,
     OPTION_CROP,

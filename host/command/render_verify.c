@@ -71,7 +71,7 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
     StepList list = {0};
     few.chains.steps = STEPS_COMPARED;
     render_frame(integrator, scene, options, &run.frame);
-    if (!render_photons_make(&run, integrator, scene, error))
+    if (!render_openings_find(&run, integrator, scene, error) || !render_photons_make(&run, integrator, scene, error))
         return false;
     if (integrator->list) {
         bool same = integrator->list(&run.frame, &list, error);

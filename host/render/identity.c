@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Changes with what the archives of a rendering's state hold. */
-#define LAYOUT "3"
+#define LAYOUT "4"
 
 #ifdef KERNELS_IN_DOUBLE
 #define PRECISION " (double)"
@@ -110,6 +110,7 @@ static void paths_add(Identity *identity, const RenderOptions *options, const Fr
         line_add(identity, "photons=default\n");
     else
         line_add(identity, "photons=%u\n", options->photons);
+    switch_add(identity, "openings", !options->no_openings);
 }
 
 /* A shard, and what its share is of. */

@@ -68,6 +68,7 @@ typedef struct RenderOptions {
     uint64_t seed;
     unsigned photons; /* of caustics, at most (path/photon.h); 0: none; PHOTONS_DEFAULT */
     unsigned reconstruction; /* RECONSTRUCTION_* (layout/frame_params.h), where the film allows it: render_frame */
+    bool no_openings; /* light subpaths do not start through openings (layout/openings.h) */
     bool independent; /* samples of a pixel are not stratified (path/path_random.h) */
     bool balance; /* balance heuristic; otherwise the power heuristic */
     bool only_strategy; /* show one strategy only */

@@ -11,6 +11,7 @@
 #include "render/checkpoint.h"
 #include "render/error_watch.h"
 #include "render/film_pilot.h"
+#include "render/openings.h"
 #include "render/photon_map.h"
 #include "render/photon_worth.h"
 #include "render/pilot_file.h"
@@ -230,6 +231,7 @@ static void result_fill(const RenderRun *run, RenderResult *result)
     result->error_reached = error_watch_reached(run);
     result->stopped = *render_run_stop(run);
     result->photons = run->photons.params.count;
+    result->openings = run->frame.openings.count;
 }
 
 /* A filter wider than this costs more to spread splats by than they cost. */
@@ -278,6 +280,19 @@ unsigned render_photons(const Integrator *integrator, const RenderOptions *optio
     return integrator->photons_default ? integrator->photons_default(options, pixels) : 0;
 }
 
+static bool starts_at_lights(const Integrator *integrator)
+{
+    return (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
+}
+
+bool render_openings_find(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
+{
+    bool as_published = integrator->render && run->options->chains.paper;
+    if (run->options->no_openings || as_published || !starts_at_lights(integrator))
+        return true;
+    return openings_find(run, scene, error);
+}
+
 bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
     if (!run->resumed)
@@ -323,8 +338,7 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     memset(result, 0, sizeof *result);
     render_frame(integrator, scene, options, &run.frame);
     film_filter_set(film, &run.frame.film, scene->lookup.data);
-    bool from_light = (integrator->strategies & (STRATEGY_CAMERA | STRATEGY_INNER)) != 0;
-    if (from_light && !film_light_reserve(film, error))
+    if (starts_at_lights(integrator) && !film_light_reserve(film, error))
         return false;
     BackendStatistics statistics;
     run.interface->statistics(run.backend, &statistics);
@@ -336,6 +350,7 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
     PilotFile pilot = {.path = NULL};
     bool done = checkpoint_begin(&checkpoint, &run, integrator, scene, error) &&
                 pilot_file_open(&pilot, &run, integrator, scene, error) && quantum_and_seed_set(task, &run, error) &&
+                render_openings_find(&run, integrator, scene, error) &&
                 render_photons_make(&run, integrator, scene, error) &&
                 (!layers || render_layers_init(layers, layers->wanted, options->error.goal > 0.0, film, error)) &&
                 (integrator->render ? integrator->render(&run, error) : samples_render(integrator, &run, error));

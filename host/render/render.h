@@ -20,6 +20,7 @@ typedef struct RenderResult {
     double seconds; /* of rendering alone, photons included */
     bool stopped; /* by options->stop */
     uint photons;
+    uint openings; /* layout/openings.h */
     BackendStatistics backend;
     ChainStatistics chains;
     ErrorWatch error;
@@ -45,6 +46,9 @@ typedef struct RenderTask {
 /* Number of caustic photons that a rendering asks for: none for images by depth, which have no layer for what photons
  * bring, and none where chains alone are shown, since path tracing draws by photons. */
 unsigned render_photons(const Integrator *integrator, const RenderOptions *options, uint64_t pixels);
+
+/* Finds the openings of a run (render/openings.h), if its light subpaths are to start through them. */
+bool render_openings_find(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error);
 
 /* Makes the photons of a run, to be destroyed by photon_map_destroy (render/photon_map.h): run->photons, none if there
  * are none to be found, and their parameters in the run's frame. */

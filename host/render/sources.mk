@@ -15,6 +15,9 @@ libtwinlight_host_la_SOURCES += \
 	host/render/layers.c host/render/layers.h \
 	host/render/merge.c host/render/merge.h \
 	host/render/part.c host/render/part.h \
+	host/render/opening_fit.c host/render/opening_fit.h \
+	host/render/opening_search.c host/render/opening_search.h \
+	host/render/openings.c host/render/openings.h \
 	host/render/photon_grid.c host/render/photon_grid.h \
 	host/render/photon_lobe.c host/render/photon_lobe.h \
 	host/render/photon_map.c host/render/photon_map.h \

@@ -196,6 +196,7 @@ static void stats_print(FILE *stream, const RenderStats *stats)
     json_unsigned(&json, "samples", result->samples);
     json_number(&json, "samples_per_second", result->seconds > 0.0 ? (double)result->samples / result->seconds : 0.0);
     json_unsigned(&json, "photons", result->photons);
+    json_unsigned(&json, "openings", result->openings);
     json_bool(&json, "stopped", result->stopped);
     if (stats->error->goal > 0.0)
         stats_error(&json, stats);

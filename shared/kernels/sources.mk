@@ -7,6 +7,7 @@ SHARED_FILES += \
 	shared/kernels/film_add.cl \
 	shared/kernels/ibpt.cl \
 	shared/kernels/mlt.cl \
+	shared/kernels/opening.cl \
 	shared/kernels/photon.cl \
 	shared/kernels/pt.cl \
 	shared/kernels/rounding.cl \

@@ -4,6 +4,7 @@
 #ifndef TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 #define TWINLIGHT_LAYOUT_FRAME_PARAMS_H
 
+#include "layout/openings.h"
 #include "layout/photon_map.h"
 #include "layout/scene_types.h"
 
@@ -17,6 +18,7 @@
 #define PATH_STREAM_MUTATION 4u /* the choice of a chain's mutation */
 #define PATH_STREAM_PHOTON 5u /* light subpaths of which photons are made */
 #define PATH_STREAM_CAUSTIC 6u /* directions drawn by photons */
+#define PATH_STREAM_OPENING 7u /* camera subpaths by which openings are found */
 
 /* Largest number of light guides. */
 #define LIGHT_GUIDES_MAX 8u
@@ -113,6 +115,7 @@ typedef struct FrameParams {
     FilmParams film;
     PathParams path;
     PhotonParams photons;
+    OpeningParams openings;
     PartitionParams partition;
     PoolParams pool;
     ChainParams chains;

@@ -73,6 +73,13 @@
     X(pt_walk_caustics, 8, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,     \
       BUFFER_SHADOWS, BUFFER_HITS)
 
+#define KERNEL_LIST_OPENINGS(X)                                                                                        \
+    X(opening_start, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS, BUFFER_PATHS,        \
+      BUFFER_RAYS)                                                                                                     \
+    X(opening_walk, 7, BUFFER_FRAME, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PATHS, BUFFER_RAYS,         \
+      BUFFER_HITS)                                                                                                     \
+    X(opening_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)
+
 #define KERNEL_LIST_CHAINS(X)                                                                                          \
     X(pool_end, 3, BUFFER_FRAME, BUFFER_PATHS, BUFFER_PASS)                                                            \
     X(mlt_begin, 9, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_GEOMETRY, BUFFER_TABLES, BUFFER_TEXELS, BUFFER_PASS,            \
@@ -92,7 +99,9 @@
 
 #define KERNEL_LIST(X)                                                                                                 \
     KERNEL_LIST_PATHS(X)                                                                                               \
-    KERNEL_LIST_OTHERS(X) KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_IBPT(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_CHAINS(X)
+    KERNEL_LIST_OTHERS(X)                                                                                              \
+    KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_IBPT(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_OPENINGS(X)                   \
+        KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths, ...: the values of Step.kernel. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

@@ -8,6 +8,7 @@ SHARED_FILES += \
 	shared/layout/material_list.h \
 	shared/layout/pass_data.h \
 	shared/layout/path_types.h \
+	shared/layout/openings.h \
 	shared/layout/photon_map.h \
 	shared/layout/scene_types.h \
 	shared/layout/scene_view.h \

@@ -237,6 +237,23 @@
     MEMBER(PhotonParams, cells_per_unit)                                                                               \
     MEMBER(PhotonParams, point_radius)                                                                                 \
     MEMBER(PhotonParams, distant_sine)                                                                                 \
+    STRUCT(Opening)                                                                                                    \
+    MEMBER(Opening, light)                                                                                             \
+    MEMBER(Opening, axis)                                                                                              \
+    MEMBER(Opening, at)                                                                                                \
+    MEMBER(Opening, u_low)                                                                                             \
+    MEMBER(Opening, v_low)                                                                                             \
+    MEMBER(Opening, u_high)                                                                                            \
+    MEMBER(Opening, v_high)                                                                                            \
+    MEMBER(Opening, side)                                                                                              \
+    MEMBER(Opening, share)                                                                                             \
+    STRUCT(OpeningParams)                                                                                              \
+    MEMBER(OpeningParams, count)                                                                                       \
+    MEMBER(OpeningParams, each)                                                                                        \
+    MEMBER(OpeningParams, light_count)                                                                                 \
+    MEMBER(OpeningParams, lights)                                                                                      \
+    MEMBER(OpeningParams, light_shares)                                                                                \
+    MEMBER(OpeningParams, light_pdfs)                                                                                  \
     STRUCT(PathParams)                                                                                                 \
     MEMBER(PathParams, max_depth)                                                                                      \
     MEMBER(PathParams, min_depth)                                                                                      \
@@ -282,6 +299,7 @@
     MEMBER(FrameParams, film)                                                                                          \
     MEMBER(FrameParams, path)                                                                                          \
     MEMBER(FrameParams, photons)                                                                                       \
+    MEMBER(FrameParams, openings)                                                                                      \
     MEMBER(FrameParams, partition)                                                                                     \
     MEMBER(FrameParams, pool)                                                                                          \
     MEMBER(FrameParams, chains)                                                                                        \

@@ -10,7 +10,7 @@
 #ifndef TWINLIGHT_LIGHT_AIM_H
 #define TWINLIGHT_LIGHT_AIM_H
 
-#include "light/emit.h"
+#include "light/opening.h"
 
 /* Others have at most a third more variance. docs/CAUSTICS.md */
 #define AIM_PART 0.25f
@@ -58,7 +58,7 @@ SHARED_FUNCTION float light_aimed_pdf_w(const SceneView *scene, uint light, Vec3
 SHARED_FUNCTION float light_aimed_pdf_disc(const SceneView *scene, uint light, Vec3 p, Vec3 w)
 {
     uint count = scene->frame->scene.aim_count;
-    float unaimed = light_emit_pdf_passing(scene, light, p, w), sum = 0.0f;
+    float unaimed = light_opened_pdf_disc(scene, light, p, w), sum = 0.0f;
     if (count == 0u)
         return unaimed;
     for (uint i = 0u; i < count; ++i) {
@@ -100,7 +100,8 @@ SHARED_FUNCTION bool aim_from_point(const SceneView *scene, __global const Light
     return cosine > 0.0f;
 }
 
-/* light_emit, with a part of the rays aimed. u_aim: uniform in [0, 1). */
+/* light_emit, with a part of the rays aimed, and of the others from infinity a part through openings. u_aim: uniform in
+ * [0, 1). */
 SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float u_aim, Vec2 u_point, Vec2 u_direction,
                                       LightEmission *emission)
 {
@@ -108,14 +109,20 @@ SHARED_FUNCTION bool light_emit_aimed(const SceneView *scene, uint light, float 
     __global const Light *source = scene->lights + light;
     if (!light_emit(scene, light, u_point, u_direction, emission))
         return false;
-    if (count == 0u)
+    bool infinite = emission->infinite != 0u;
+    if (count == 0u && (!infinite || scene->frame->openings.count == 0u))
         return true;
-    uint index = (uint)(u_aim / AIM_PART * (float)count);
-    bool aimed = u_aim < AIM_PART && index < count;
-    Aim aim = scene->aims[aimed ? index : 0u];
-    if (emission->infinite != 0u) {
+    float part = count > 0u ? AIM_PART : 0.0f;
+    uint index = count > 0u ? (uint)(u_aim / AIM_PART * (float)count) : 0u;
+    bool aimed = u_aim < part && index < count;
+    Aim aim = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    if (aimed)
+        aim = scene->aims[index];
+    if (infinite) {
         if (aimed)
             aim_from_infinity(scene, aim, u_point, emission);
+        else if (!light_open(scene, light, (u_aim - part) / (1.0f - part), u_point, emission))
+            return false;
         if (aimed && light_has_portal(scene, light) &&
             !(light_emit_pdf_passing(scene, light, emission->p, emission->w) > 0.0f))
             return false;

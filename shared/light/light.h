@@ -17,6 +17,23 @@ SHARED_FUNCTION uint light_select(const SceneView *scene, uint bits0, uint bits1
     return alias_sample(scene->light_alias, scene->frame->scene.light_count, bits0, bits1);
 }
 
+/* Where the light's share of light subpaths is (layout/openings.h); OPENING_LIGHTS_MAX: lights[light].select_pdf. */
+SHARED_FUNCTION uint light_divided(const SceneView *scene, uint light)
+{
+    __global const OpeningParams *openings = &scene->frame->openings;
+    for (uint i = 0u; i < openings->light_count; ++i)
+        if (openings->lights[i] == light)
+            return i;
+    return OPENING_LIGHTS_MAX;
+}
+
+/* Probability with which light_start_point chooses the light. */
+SHARED_FUNCTION float light_start_pdf(const SceneView *scene, uint light)
+{
+    uint i = light_divided(scene, light);
+    return i < OPENING_LIGHTS_MAX ? scene->frame->openings.light_pdfs[i] : scene->lights[light].select_pdf;
+}
+
 /* light_select with the numbers of a point on the light, the first of which chooses the light and is stretched to what
  * is left of it, so that points stay stratified; *u: then those of the point. random: x: as bits1 of light_select; z,
  * w: point (y is not used). */
@@ -24,6 +41,20 @@ SHARED_FUNCTION uint light_select_point(const SceneView *scene, Random4 random, 
 {
     u->y = random_float(random.x[3]);
     return alias_sample_rest(scene->light_alias, scene->frame->scene.light_count, random.x[2], random.x[0], &u->x);
+}
+
+/* Chooses the light from which a light subpath starts; numbers as in light_select_point. */
+SHARED_FUNCTION uint light_start_point(const SceneView *scene, Random4 random, Vec2 *u)
+{
+    uint light = light_select_point(scene, random, u);
+    __global const OpeningParams *openings = &scene->frame->openings;
+    if (light_divided(scene, light) == OPENING_LIGHTS_MAX)
+        return light;
+    uint i = 0u;
+    for (; i + 1u < openings->light_count && u->x >= openings->light_shares[i]; ++i)
+        u->x -= openings->light_shares[i];
+    u->x = float_min(u->x / openings->light_shares[i], 0.99999994f);
+    return openings->lights[i];
 }
 
 /* Chooses the light that a vertex at p with geometric normal ng is connected to; numbers as in light_select_point.
@@ -52,10 +83,10 @@ SHARED_FUNCTION float light_choice_pdf(const SceneView *scene, uint light, Vec3 
 /* light_choice_pdf over the probability with which a light subpath starts there. */
 SHARED_FUNCTION float light_choice_ratio(const SceneView *scene, uint light, Vec3 p, Vec3 ng)
 {
-    if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE))
+    if (!SCENE_HAS(scene, FEATURE_LIGHT_TREE) && scene->frame->openings.light_count == 0u)
         return 1.0f;
-    float pdf = light_tree_pdf(scene, light, p, ng);
-    return pdf > 0.0f ? pdf / scene->lights[light].select_pdf : 0.0f;
+    float pdf = light_choice_pdf(scene, light, p, ng), start = light_start_pdf(scene, light);
+    return pdf > 0.0f ? pdf / start : 0.0f;
 }
 
 /* Draws light that arrives at `ref` from `light`, occlusion ignored. False: no contribution; *sample is then

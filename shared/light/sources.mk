@@ -1,6 +1,7 @@
 SHARED_FILES += \
 	shared/light/light_guide.h \
 	shared/light/light_tree.h \
+	shared/light/opening.h \
 	shared/light/aim.h \
 	shared/light/area.h \
 	shared/light/delta.h \

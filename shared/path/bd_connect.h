@@ -67,7 +67,7 @@ SHARED_FUNCTION_CALLED bool connect_light(const SceneView *scene, const Vertex *
     if (!light_sample(scene, light, z->p, u, &sample))
         return false;
     BsdfValue f = bsdf_eval(scene, &z->bsdf, z->wo, frame_to_local(z->frame, sample.wi), TRANSPORT_RADIANCE);
-    float select = scene->lights[light].select_pdf;
+    float select = light_start_pdf(scene, light);
     connection->contribution =
         vec3_scale(vec3_mul(vec3_mul(z->beta, f.f_cos), sample.radiance), 1.0f / (choice * sample.pdf_w));
     connection->shadow = light_shadow_ray(scene, z->p, z->ng, &sample);

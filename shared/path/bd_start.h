@@ -34,12 +34,12 @@ SHARED_FUNCTION bool walk_start_light(const SceneView *scene, Walk walk, __globa
     __global uint *paths = walk.paths;
     uint stride = walk.stride, item = walk.item;
     Vec2 u;
-    uint light = light_select_point(scene, connection_random_light(choice, random), &u);
+    uint light = light_start_point(scene, connection_random_light(choice, random), &u);
     LightEmission emission = {0};
     if (!light_emit_aimed(scene, light, random_float(choice.x[2]), u,
                           vec2(random_float(random.x[2]), random_float(random.x[3])), &emission))
         return false;
-    float select = scene->lights[light].select_pdf;
+    float select = light_start_pdf(scene, light);
     bool infinite = emission.infinite != 0u, invisible = light_is_invisible(scene, light);
     uint flags = (infinite ? EMITTER_INFINITE : 0u) |
                  (emission.delta_position != 0u || emission.delta_direction != 0u || invisible ? EMITTER_DELTA : 0u) |

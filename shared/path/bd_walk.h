@@ -373,7 +373,7 @@ SHARED_FUNCTION Vec3 emission_met(const SceneView *scene, const WalkHit *walk_hi
     const Surface *surface = &walk_hit->surface;
     uint light = walk_hit->light;
     Vec3 towards = vec3_negate(walk_hit->ray.d);
-    ends->light_z1 = scene->lights[light].select_pdf * light_emit_pdf_p(scene, light, surface);
+    ends->light_z1 = light_start_pdf(scene, light) * light_emit_pdf_p(scene, light, surface);
     ends->light_z2 = light_aimed_pdf_w(scene, light, surface->p, surface->ng, towards) * walk_hit->back;
     ends->connect = light_connect_ratio(scene, light, walk_hit->from, walk_hit->ray.d, walk_hit->distance2, surface) *
                     light_choice_ratio(scene, light, walk_hit->from, walk_hit->from_ng);
@@ -386,7 +386,7 @@ SHARED_FUNCTION Vec3 environment_met(const SceneView *scene, uint light, const W
 {
     const Ray *ray = &miss->ray;
     Vec3 ng = miss->from_ng;
-    ends->light_z1 = scene->lights[light].select_pdf * environment_pdf_w(scene, light, ray->d);
+    ends->light_z1 = light_start_pdf(scene, light) * environment_pdf_w(scene, light, ray->d);
     ends->light_z2 = light_aimed_pdf_disc(scene, light, ray->o, vec3_negate(ray->d)) *
                      vertex_cosine(scene, ray->d, ng) * miss->passage_back;
     ends->connect =

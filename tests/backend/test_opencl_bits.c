@@ -1,6 +1,7 @@
 /* The same image, bit for bit, on the CPU and on the device. */
 #include "backend/test_opencl.h"
 #include "support/numerics.h"
+#include "support/room_scene.h"
 
 #include "backend_ocl.h"
 
@@ -105,6 +106,23 @@ START_TEST(test_bits_of_chains)
     setup.chains.order = CHAIN_ORDER_NONE;
     if (test_device_promises())
         backends_agree("chains, neither sorted nor grouped", setup);
+}
+END_TEST
+
+/* Openings, which each backend finds by itself. */
+START_TEST(test_bits_of_openings)
+{
+    RenderedImage cpu, image;
+    RenderSetup setup = {.text = ROOM_SCENE, .samples = 3, .threads = 2, .integrator = integrator_bdpt()};
+    if (!test_device_promises())
+        return;
+    fixture_render(&setup, &cpu);
+    ck_assert_uint_eq(cpu.result.openings, 2);
+    setup.backend = backend_ocl();
+    fixture_render(&setup, &image);
+    films_equal("openings", &cpu.film, &image.film);
+    fixture_destroy(&image);
+    fixture_destroy(&cpu);
 }
 END_TEST
 
@@ -226,6 +244,7 @@ TCase *opencl_bits_tests(void)
     tcase_add_loop_test(bits, test_bits_of_bidirectional_paths, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_chains, 0, 4);
     tcase_add_loop_test(bits, test_bits_of_photons, 0, 2);
+    tcase_add_test(bits, test_bits_of_openings);
     tcase_add_loop_test(bits, test_bits_of_public_scenes, 0, 4);
     tcase_add_test(bits, test_bits_for_any_batch);
     return bits;

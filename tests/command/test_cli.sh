@@ -482,7 +482,7 @@ expect 0 '"z_test": {' compare --json halves1.exr halves2.exr
 render --seed=18446744073709551615 --stats=stats.json -o stats.exr "$scene"
 result '--stats: exit status' $?
 for key in format version scene file width height crop max_depth primitives instances materials lights bytes \
-    integrator backend device seed threads samples_per_pixel samples samples_per_second photons stopped seconds load build \
+    integrator backend device seed threads samples_per_pixel samples samples_per_second photons openings stopped seconds load build \
     render write total rays closest shadow seconds_all_threads per_second peak_memory_bytes backend_bytes diagnostics \
     film_saturated film_full_pixels film_vanished film_not_finite degenerate_triangles zero_area_lights substitutions warnings kernels image png; do
     grep -q "\"$key\": " stats.json

@@ -11,6 +11,7 @@ int main(void)
     suite_add_tcase(suite, emit_power_case());
     suite_add_tcase(suite, emit_distance_case());
     suite_add_tcase(suite, emit_aims_case());
+    suite_add_tcase(suite, emit_openings_case());
     suite_add_tcase(suite, emit_camera_case());
     suite_add_tcase(suite, emit_spherical_case());
     suite_add_tcase(suite, emit_splat_case());

@@ -9,6 +9,7 @@ TCase *emit_direction_case(void);
 TCase *emit_power_case(void);
 TCase *emit_distance_case(void);
 TCase *emit_aims_case(void);
+TCase *emit_openings_case(void);
 TCase *emit_camera_case(void);
 TCase *emit_spherical_case(void);
 TCase *emit_splat_case(void);

@@ -131,7 +131,18 @@ static Estimate estimate(double sum, double squares, double count)
     return (Estimate){mean, sqrt(fmax(0.0, squares / count - mean * mean) / count)};
 }
 
-/* Cases from LIGHT_CASES on: with aims, one in part of the receiver, one wide above it; for lights that are in the
+/* Openings above the receiver, one of which light comes through from both sides, and one beside it. */
+static void add_openings(LightFixture *f, int which)
+{
+    const float side = which == DISTANT ? 0.0f : 1.0f;
+    f->scene.frame.openings = (OpeningParams){.count = 3,
+                                              .each = {{0, 2, -1.5f, -0.4f, -1.2f, 1.3f, 0.2f, side, 0.3f},
+                                                       {0, 2, -0.9f, -1.5f, -1.5f, 1.5f, 1.5f, 0.0f, 0.15f},
+                                                       {0, 0, 0.7f, -0.9f, -2.5f, 0.6f, -0.5f, side, 0.1f}}};
+}
+
+/* Cases from 2 LIGHT_CASES on, which are for light from infinity: with openings, and from 3 on with aims, too. Cases
+ * from LIGHT_CASES on: with aims, one in part of the receiver, one wide above it; for lights that are in the
  * scene also one around them, and one behind. */
 static double setup_aimed(LightFixture *f, int which)
 {
@@ -140,7 +151,9 @@ static double setup_aimed(LightFixture *f, int which)
                                {{0.1f, 0.0f, 0.1f}, 1.0f},
                                {{0.3f, -0.5f, 1.5f}, 0.2f}};
     double power = setup(f, which % LIGHT_CASES);
-    if (which < LIGHT_CASES)
+    if (which >= 2 * LIGHT_CASES)
+        add_openings(f, which % LIGHT_CASES);
+    if (which / LIGHT_CASES % 2 == 0)
         return power;
     Error error = {0};
     const uint count = which % LIGHT_CASES >= DISTANT ? 2 : 4;
@@ -238,5 +251,9 @@ TCase *emit_power_case(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_loop_test(tcase, test_power, 0, 2 * LIGHT_CASES);
     tcase_add_loop_test(tcase, test_irradiance, 0, 2 * LIGHT_CASES);
+    for (int with = 2 * LIGHT_CASES; with <= 3 * LIGHT_CASES; with += LIGHT_CASES) {
+        tcase_add_loop_test(tcase, test_power, with + DISTANT, with + LIGHT_CASES);
+        tcase_add_loop_test(tcase, test_irradiance, with + DISTANT, with + LIGHT_CASES);
+    }
     return tcase;
 }

@@ -74,6 +74,7 @@ void fixture_render(const RenderSetup *setup, RenderedImage *image)
                              .max_depth = setup->max_depth > 0 ? setup->max_depth : scene.settings.max_depth,
                              .seed = setup->seed,
                              .photons = setup->photons,
+                             .no_openings = setup->no_openings,
                              .reconstruction = setup->reconstruction,
                              .chains = setup->chains,
                              .layers = setup->layers,

@@ -20,6 +20,7 @@ typedef struct RenderSetup {
     bool record_spans;
     uint64_t seed;
     unsigned photons;
+    bool no_openings;
     unsigned reconstruction; /* RECONSTRUCTION_* */
     bool after_another; /* the backend has rendered with the next seed before */
     const Integrator *integrator; /* NULL: path tracing */
