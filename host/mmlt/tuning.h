@@ -10,6 +10,7 @@
 
 /* Fraction of a pool's samples that have a light subpath; those without take a third of the time; docs/TUNING.md. */
 #define POOL_LIGHTS 0.25
+#define POOL_LIGHTS_OPENED 0.75
 
 /* Clamping threshold, in units of the mean contribution weight of a pool's sample. More shows fireflies, less leaves
  * more to the chains; docs/TUNING.md. */
