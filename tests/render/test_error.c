@@ -96,6 +96,21 @@ static RenderSetup setup_of(int which)
 
 static NoisyPicture rendered; /* and its reference */
 
+/* References for both reconstructions, rendered once for all tests of a case. */
+static float references[2][3 * WIDTH * HEIGHT];
+
+static void references_render(void)
+{
+    for (uint i = 0; i < 2; ++i) {
+        RenderedImage image;
+        const RenderSetup setup = {
+            .text = SCENE, .width = WIDTH, .height = HEIGHT, .samples = 2000, .seed = 99, .reconstruction = i};
+        fixture_render(&setup, &image);
+        memcpy(references[i], image.rgb, sizeof references[i]);
+        fixture_destroy(&image);
+    }
+}
+
 /* The error of an image by the reference, in the measure of the goal. */
 static double error_of(const RenderedImage *image, const ErrorGoal *goal)
 {
@@ -109,16 +124,8 @@ START_TEST(test_promise)
 {
     RenderedImage image;
     RenderSetup setup = setup_of(_i);
-    RenderSetup reference = {.text = SCENE,
-                             .width = WIDTH,
-                             .height = HEIGHT,
-                             .samples = 2000,
-                             .seed = 99,
-                             .reconstruction = setup.reconstruction};
     double ratio = 0.0, least = 1e9, most = 0.0;
-    fixture_render(&reference, &image);
-    memcpy(rendered.truth, image.rgb, sizeof rendered.truth);
-    fixture_destroy(&image);
+    memcpy(rendered.truth, references[setup.reconstruction], sizeof rendered.truth);
     for (unsigned seed = 1; seed <= SEEDS; ++seed) {
         RenderLayers layers = {0};
         setup.seed = seed;
@@ -290,6 +297,7 @@ int main(void)
     suite_add_tcase(suite, looks);
     tcase_set_timeout(promise, test_effort() > 1 ? 1200 : 120);
     tcase_set_tags(promise, "pictures");
+    tcase_add_unchecked_fixture(promise, references_render, NULL);
     tcase_add_loop_test(promise, test_promise, 0, renderings);
     tcase_add_loop_test(promise, test_promise_of_scenes, 0, sizeof LONG_RENDERINGS / sizeof LONG_RENDERINGS[0]);
     tcase_add_loop_test(promise, test_halves, 0, renderings);
