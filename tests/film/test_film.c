@@ -407,6 +407,7 @@ int main(void)
     suite_add_tcase(suite, film_complete_tcase());
     suite_add_tcase(suite, film_output_tcase());
     suite_add_tcase(suite, film_spread_tcase());
+    suite_add_tcase(suite, film_uniform_tcase());
     suite_add_tcase(suite, film_files_tcase());
     suite_add_tcase(suite, film_words_tcase());
     return test_run(suite);

@@ -32,6 +32,7 @@ TCase *film_complete_tcase(void);
 TCase *film_files_tcase(void);
 TCase *film_output_tcase(void);
 TCase *film_spread_tcase(void);
+TCase *film_uniform_tcase(void);
 TCase *film_units_tcase(void);
 TCase *film_words_tcase(void);
 

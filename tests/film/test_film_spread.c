@@ -410,9 +410,17 @@ TCase *film_spread_tcase(void)
     tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_normalized, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_normalized_merge);
-    tcase_add_loop_test(tcase, test_uniform, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_merge);
     tcase_add_test(tcase, test_extremes);
     tcase_add_test(tcase, test_together);
+    return tcase;
+}
+
+TCase *film_uniform_tcase(void)
+{
+    TCase *tcase = tcase_create("uniform");
+    tcase_set_timeout(tcase, 120);
+    tcase_set_tags(tcase, "pictures");
+    tcase_add_loop_test(tcase, test_uniform, 0, FILTER_CASE_COUNT);
     return tcase;
 }

@@ -270,8 +270,13 @@ int main(void)
     TCase *tcase = tcase_create("checkpoint");
     tcase_set_timeout(tcase, 120.0);
     tcase_add_checked_fixture(tcase, test_folder_make, test_folder_remove);
-    tcase_add_loop_test(tcase, test_stopped, 0, sizeof CASES / sizeof CASES[0]);
     tcase_add_test(tcase, test_other_sizes);
     suite_add_tcase(suite, tcase);
+    TCase *stopped = tcase_create("stopped");
+    tcase_set_timeout(stopped, 120.0);
+    tcase_set_tags(stopped, "pictures");
+    tcase_add_checked_fixture(stopped, test_folder_make, test_folder_remove);
+    tcase_add_loop_test(stopped, test_stopped, 0, sizeof CASES / sizeof CASES[0]);
+    suite_add_tcase(suite, stopped);
     return test_run(suite);
 }

@@ -385,7 +385,11 @@ int main(void)
     tcase_add_test(tcase, test_halves);
     tcase_add_loop_test(tcase, test_sequences, 0, 4);
     tcase_add_loop_test(tcase, test_by_depth, 0, 2);
-    tcase_add_test(tcase, test_variance);
     suite_add_tcase(suite, tcase);
+    TCase *variance = tcase_create("variance");
+    tcase_set_timeout(variance, 120.0);
+    tcase_set_tags(variance, "pictures");
+    tcase_add_test(variance, test_variance);
+    suite_add_tcase(suite, variance);
     return test_run(suite);
 }

@@ -144,7 +144,7 @@ START_TEST(test_unskipped)
     BackendInterface unskipping = unskipping_backend(backend_cpu());
     for (size_t i = 0; i < sizeof integrators / sizeof integrators[0]; ++i) {
         const RenderSetup setup = {
-            .text = ROOM, .max_depth = 8, .seed = 3, .integrator = integrators[i], .backend = &unskipping};
+            .text = ROOM, .max_depth = 5, .seed = 3, .integrator = integrators[i], .backend = &unskipping};
         Error error = {0};
         VerifyReport report;
         ck_assert_msg(setup_verify(&setup, 64 * 48 * 2, &NEVER, &report, &error), "%s: %s", integrators[i]->name,
