@@ -65,7 +65,7 @@ START_TEST(test_shown_filters)
              "Shape \"bilinearmesh\" \"point3 P\" [ -2 -1 -2  2 -1 -2  -2 -1 2  2 -1 2 ]\n" PANE("0.5", "3"),
              BIDIRECTIONAL_FILTERS[filter]);
     const BidirectionalScene scene = {"sun", text, SUPPORT_SUM_ONLY, 5, 2};
-    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 2048, 4096, reconstruction);
+    estimator_compare(BIDIRECTIONAL_FILTERS[filter], &scene, estimator, 1024, 1024, reconstruction);
 }
 END_TEST
 
@@ -88,7 +88,7 @@ START_TEST(test_shown_lights)
     const int estimator = _i % SHOWN_COUNT;
     const BidirectionalScene *scene = &SUNS[_i / SHOWN_COUNT];
     if (!estimator_left_out(estimator))
-        estimator_compare(scene->name, scene, estimator, 128, 512, RECONSTRUCTION_SAMPLE);
+        estimator_compare(scene->name, scene, estimator, 64, 128, RECONSTRUCTION_SAMPLE);
 }
 END_TEST
 
@@ -111,7 +111,7 @@ static const BidirectionalScene FIRE = {
 START_TEST(test_shown_emission)
 {
     if (_i < 0 || !estimator_left_out(_i))
-        estimator_compare(FIRE.name, &FIRE, _i, 512, 512, RECONSTRUCTION_SAMPLE);
+        estimator_compare(FIRE.name, &FIRE, _i, 128, 128, RECONSTRUCTION_SAMPLE);
 }
 END_TEST
 
