@@ -71,8 +71,9 @@ START_TEST(test_state_is_the_same)
                  {GRID_SCENE, 0, integrator_pt(), 7, 3000},
                  {GRID_SCENE, 0, integrator_ibpt(), 5, 3000},
                  {GRID_SCENE, 0, integrator_bdpt(), 4, 3000}};
-    if (!test_device_promises())
-        return;
+    const bool takes_long = cases[_i].text == GRID_SCENE || (cases[_i].text == MEDIA_SCENE && cases[_i].depth == 5);
+    if ((test_effort() == 1 && takes_long) || !test_device_promises())
+        return; /* the programs of some scenes only in make check-long */
     RenderSetup setup = {.text = cases[_i].text,
                          .max_depth = cases[_i].depth,
                          .seed = 11,
@@ -175,7 +176,7 @@ TCase *opencl_inspect_tests(void)
 {
     TCase *inspect = tcase_create("inspect");
     tcase_set_timeout(inspect, 120);
-    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 8);
+    tcase_add_loop_test(inspect, test_state_is_the_same, 0, 11);
     tcase_add_test(inspect, test_inspect_is_run);
     tcase_add_test(inspect, test_fault_is_named);
     tcase_add_test(inspect, test_failure);
