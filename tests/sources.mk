@@ -66,7 +66,7 @@ endif
 EFFORT = 8
 # Builds a copy with a BSDF and an integrator more: minutes.
 dist_check_SCRIPTS += tests/test_recipes.sh
-LONG_TESTS = tests/test_analytic tests/test_bidirectional tests/test_bvh tests/test_caustic tests/test_error tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
+LONG_TESTS = tests/test_analytic tests/test_bidirectional tests/test_bsdf tests/test_bvh tests/test_caustic tests/test_error tests/test_film tests/test_mmlt tests/test_numerics tests/test_reference \
 	tests/test_scenes tests/command/test_checkpoint.sh tests/command/test_hostile.sh
 if HAVE_OPENCL
 LONG_TESTS += tests/test_opencl
