@@ -14,13 +14,15 @@ opencl=yes
 
 # shortened COMMAND: takes a moment.
 shortened() {
-    text=$(printf '%s\n' "$1" | sed 's/--time=[0-9a-z]*/--time=1s/; s/--times=[0-9a-z,]*/--times=1s/; s/--save-every=[0-9a-z]*/--save-every=1s/')
+    text=$(printf '%s\n' "$1" | sed 's/--time=[0-9a-z]*/--time=1s/; s/--times=[0-9a-z,]*/--times=0.3s/;
+        s/--save-every=[0-9a-z]*/--save-every=1s/; s/--samples=[0-9]*/--samples=4/')
     case $text in
     *' bench '*)
-        case $text in *--times=*) ;; *) text="$text --times=1s" ;; esac
-        text="$text --runs=1 --resolution=16x12 --reference-time=1s"
+        case $text in *--times=*) ;; *) text="$text --times=0.3s" ;; esac
+        text="$text --runs=1 --resolution=16x12 --reference-time=0.3s"
         ;;
-    *' render '* | *' pyramid '*)
+    *' pyramid '* | *--verify*) text="$text --resolution=16x12" ;;
+    *' render '*)
         case $text in *--resolution=*) ;; *) text="$text --resolution=32x24" ;; esac
         case $text in *--time=* | *--samples=*) ;; *) text="$text --samples=2" ;; esac
         ;;
