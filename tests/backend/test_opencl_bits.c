@@ -78,8 +78,8 @@ END_TEST
 
 static const Integrator *(*const BIDIRECTIONAL[])(void) = {integrator_ibpt, integrator_bdpt};
 
-/* At effort 1 the first scene, whose lights and shapes command/test_cli.sh compares as well, is left to path tracing: building
- * programs takes most of the time. */
+/* At effort 1 the first scene, whose lights and shapes command/test_cli.sh compares as well, is left to path tracing:
+ * building programs takes most of the time. */
 static bool left_to_path_tracing(int i)
 {
     return test_effort() == 1 && i < 2;
@@ -156,7 +156,7 @@ START_TEST(test_bits_of_photons)
 }
 END_TEST
 
-/* Coincident surfaces: both backends hit the same one everywhere. In make check, test_bvh compares such hits on the device. */
+/* Coincident surfaces: both backends hit the same one everywhere. In make check, test_bvh compares such hits. */
 START_TEST(test_bits_of_coincident_surfaces)
 {
     if (test_effort() > 1)

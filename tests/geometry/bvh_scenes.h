@@ -7,7 +7,7 @@
 typedef struct BvhCase {
     const char *name;
     void (*make)(TestScene *test); /* makes the scene and calls test_scene_finish */
-    uint walks; /* compared with Embree; more than 2^20 over all cases */
+    uint walks; /* compared with Embree, more than 2^20 over all cases; in make check a quarter */
     bool small; /* few enough primitives for brute force */
 } BvhCase;
 

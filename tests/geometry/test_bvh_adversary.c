@@ -386,8 +386,8 @@ static void *adversary_thread(void *argument)
     return NULL;
 }
 
-/* 10^7 rays per unit of effort from 2 to 7; the long test traces 10^9, over a hundred times as many scenes, in LONG_PARTS,
- * since Check's time limits end at 2^31 microseconds. */
+/* 10^7 rays per unit of effort from 2 to 7; the long test traces 10^9, over a hundred times as many scenes, in
+ * LONG_PARTS, since Check's time limits end at 2^31 microseconds. */
 #define LONG_PARTS 20u
 
 START_TEST(test_adversary)
