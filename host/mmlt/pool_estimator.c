@@ -129,7 +129,9 @@ FrameParams pool_estimator_frame(const PoolEstimator *pool, const Generation *ge
     FrameParams frame = generation->run->frame;
     frame.pass.item_count = pool->count;
     frame.pool.enabled = 1;
-    frame.pool.lights = pool->lights_all ? pool->count : (uint)ceil((frame.openings.count > 0 ? POOL_LIGHTS_OPENED : POOL_LIGHTS) * pool->count);
+    frame.pool.lights = pool->lights_all
+                            ? pool->count
+                            : (uint)ceil((frame.openings.count > 0 ? POOL_LIGHTS_OPENED : POOL_LIGHTS) * pool->count);
     frame.pool.items = pool->count;
     frame.pool.lights_first = pool->lights_first;
     frame.pool.lights_weight = (float)((double)pool->count / frame.pool.lights);

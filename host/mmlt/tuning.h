@@ -8,7 +8,8 @@
 /* Fewest samples of a pool per step of a chain; docs/TUNING.md. */
 #define POOL_PER_STEP (1.0 / 12.0)
 
-/* Fraction of a pool's samples that have a light subpath; those without take a third of the time; docs/TUNING.md. */
+/* Fraction of a pool's samples that have a light subpath; those without take a third of the time. The same where light
+ * comes through openings. docs/TUNING.md. */
 #define POOL_LIGHTS 0.25
 #define POOL_LIGHTS_OPENED 0.75
 

@@ -1,8 +1,8 @@
 /* The density with which light subpaths start should be in proportion to what they bring. Of densities that are
  * constant in the areas a[i] of groups of rays that bring parts p[i] of the light, the likeliest given the rays is
- * p[i] / a[i], with the log-likelihood sum p[i] log(p[i] / a[i]). So the search is for rectangles, in planes perpendicular
- * to an axis, by which that grows most: at first all rays are in a group whose area is that of the disc, and then, time
- * and again, the best rectangle for a part of any group makes a group of its own. */
+ * p[i] / a[i], with the log-likelihood sum p[i] log(p[i] / a[i]). So the search is for rectangles, in planes
+ * perpendicular to an axis, by which that grows most: at first all rays are in a group whose area is that of the
+ * disc, and then, time and again, the best rectangle for a part of any group makes a group of its own. */
 #include "render/opening_search.h"
 
 #include <math.h>
@@ -89,7 +89,8 @@ static void groups_renew(Fit *fit)
     }
 }
 
-/* The log-likelihood of the group's rays, times their weight, as a group or, instead, in an area that brings `weight`. */
+/* The log-likelihood of the group's rays, times their weight, as a group or, instead, in an area that brings
+ * `weight`. */
 static double group_likelihood(const RayGroup *group, double weight, double area)
 {
     return group->weight > 0.0 ? group->weight * log(weight / area) : 0.0;
@@ -102,7 +103,8 @@ static double group_worth(const RayGroup *group, const RayGroup *disc)
            group_likelihood(group, group->weight + disc->weight, disc->area);
 }
 
-/* Dissolves the groups of rectangles that are not worth having, until at most `most` are left besides the first group. */
+/* Dissolves the groups of rectangles that are not worth having, until at most `most` are left besides the first
+ * group. */
 static void groups_prune(Fit *fit, size_t most)
 {
     RayGroup *groups = fit->groups;

@@ -2,6 +2,7 @@
 
 #include "base/sample_statistics.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Planes per axis and cells per side of a search, and how often it is repeated in closer planes and smaller cells. */
@@ -9,8 +10,8 @@
 #define CELLS 12
 #define REFINEMENTS 5
 
-/* A search leaves out this part of the rays at either end of an axis, and goes beyond the others' origins by that part of
- * what they span. */
+/* A search leaves out this part of the rays at either end of an axis, and goes beyond the others' origins by that
+ * part of what they span. */
 #define OUTSIDE 0.02
 #define BEYOND 0.5
 
@@ -193,7 +194,7 @@ static Rectangle refined(const RaySample *sample, const RayGroup *group, Rectang
 /* Shrinks the rectangle to the group's rays that cross it and widens it by the margin; how many these are. */
 static size_t rectangle_shrink(const RaySample *sample, const RayGroup *group, Rectangle *rectangle)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double low[2] = {DBL_MAX, DBL_MAX}, high[2] = {-DBL_MAX, -DBL_MAX};
     size_t count = 0;
     for (size_t i = 0; i < sample->count; ++i) {
         double place[2];

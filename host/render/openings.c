@@ -14,9 +14,9 @@
 #define PASSES_MAX 8u
 #define RAYS_ENOUGH 512u
 
-/* A light has openings if, of the pixels to which any subpath brings light, in at least this part only one does. In rooms
- * behind windows that is .7 ... .97. Otherwise connections find its light, and light subpaths through openings, which are
- * longer than those that miss the scene, bring little more: .1 ... .4 where light comes from all around. */
+/* A light has openings if, of the pixels to which any subpath brings light, in at least this part only one does. In
+ * rooms behind windows that is .7 ... .97. Otherwise connections find its light, and light subpaths through openings,
+ * which are longer than those that miss the scene, bring little more: .1 ... .4 where light comes from all around. */
 #define SINGLE_MIN 0.5
 
 /* Openings of a light. */
@@ -77,8 +77,8 @@ static float weight_get(const OpeningPass *pass, uint item)
     return bits_float(pass->words[(size_t)OPENING_PATH_WEIGHT * PASS_PATHS + item]);
 }
 
-/* Of the subpaths of a pixel, from item `first` on: keeps the one that has come to the light, if no other has. Where many
- * come, light subpaths are of no use. */
+/* Of the subpaths of a pixel, from item `first` on: keeps the one that has come to the light, if no other has. Where
+ * many come, light subpaths are of no use. */
 static void rays_keep(OpeningPass *pass, uint first)
 {
     uint arrived = 0, last = first;

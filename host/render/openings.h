@@ -1,5 +1,5 @@
-/* Finds the openings of a rendering (layout/openings.h): traces camera subpaths, connects them to the lights at infinity,
- * and fits rectangles to the connections that nothing blocks. */
+/* Finds the openings of a rendering (layout/openings.h): traces camera subpaths, connects them to the lights at
+ * infinity, and fits rectangles to the connections that nothing blocks. */
 #ifndef TWINLIGHT_RENDER_OPENINGS_H
 #define TWINLIGHT_RENDER_OPENINGS_H
 

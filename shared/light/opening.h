@@ -1,8 +1,8 @@
 /* Light subpaths from infinity that start through openings (layout/openings.h). Of the light that falls on a house,
- * little passes a window; so part of the rays are drawn uniformly through each opening, and the rest as by light_emit.
- * The rays of a direction w through a rectangle have density 1 / (area |w_axis|) per area perpendicular to w. Those that
- * would come from the opening's inner side are mirrored at its plane, so the density of a direction on the outer side is
- * the sum of its own and its mirror image's. */
+ * little passes a window; so part of the rays are drawn uniformly through each opening, and the rest as by
+ * light_emit. The rays of a direction w through a rectangle have density 1 / (area |w_axis|) per area perpendicular
+ * to w. Those that would come from the opening's inner side are mirrored at its plane, so the density of a direction
+ * on the outer side is the sum of its own and its mirror image's. */
 #ifndef TWINLIGHT_LIGHT_OPENING_H
 #define TWINLIGHT_LIGHT_OPENING_H
 
@@ -27,7 +27,8 @@ SHARED_FUNCTION bool opening_from_inside(Opening opening, Vec3 w)
     return opening_axis_of(w, opening.axis) * opening.side > 0.0f;
 }
 
-/* Density, per area perpendicular to w (unit), of the ray that passes p along w among those drawn through the opening. */
+/* Density, per area perpendicular to w (unit), of the ray that passes p along w among those drawn through the
+ * opening. */
 SHARED_FUNCTION float opening_pdf(Opening opening, Vec3 p, Vec3 w)
 {
     uint u_axis = opening.axis == 2u ? 0u : opening.axis + 1u, v_axis = opening.axis == 0u ? 2u : opening.axis - 1u;

@@ -59,8 +59,8 @@ static bool passes(const Opening *opening, Vec3 p, Vec3 w)
            at_v > (double)opening->v_low - 1e-4 && at_v < (double)opening->v_high + 1e-4;
 }
 
-/* As many rays pass each opening of the light as its share says, hardly another does, and those drawn through one with an
- * outer side come from there. Every ray has the density that is evaluated for it in the scene. */
+/* As many rays pass each opening of the light as its share says, hardly another does, and those drawn through one
+ * with an outer side come from there. Every ray has the density that is evaluated for it in the scene. */
 START_TEST(test_shares)
 {
     enum { SAMPLES = 60000 };
@@ -126,8 +126,8 @@ START_TEST(test_integral)
 }
 END_TEST
 
-/* Light subpaths start as often from each light as light_start_pdf says, those of lights that are divided anew according
- * to their shares, and the number that is left over is uniform. Connections choose as they did. */
+/* Light subpaths start as often from each light as light_start_pdf says, those of lights that are divided anew
+ * according to their shares, and the number that is left over is uniform. Connections choose as they did. */
 START_TEST(test_division)
 {
     enum { SAMPLES = 200000, LIGHTS = 4 };

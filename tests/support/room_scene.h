@@ -1,5 +1,5 @@
-/* A room of 4 x 4 x 3 with a window of 0.8 x 0.8 in the wall x = 2, a sun that shines in, and a sky; and the same with a
- * brighter sun and a lamp. */
+/* A room of 4 x 4 x 3 with a window of 0.8 x 0.8 in the wall x = 2, a sun that shines in, and a sky; and the same
+ * with a brighter sun and a lamp. */
 #ifndef TWINLIGHT_TESTS_SUPPORT_ROOM_SCENE_H
 #define TWINLIGHT_TESTS_SUPPORT_ROOM_SCENE_H
 
