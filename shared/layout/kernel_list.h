@@ -100,8 +100,8 @@
 #define KERNEL_LIST(X)                                                                                                 \
     KERNEL_LIST_PATHS(X)                                                                                               \
     KERNEL_LIST_OTHERS(X)                                                                                              \
-    KERNEL_LIST_BIDIRECTIONAL(X) KERNEL_LIST_IBPT(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_OPENINGS(X)                   \
-        KERNEL_LIST_CHAINS(X)
+    KERNEL_LIST_BIDIRECTIONAL(X)                                                                                       \
+    KERNEL_LIST_IBPT(X) KERNEL_LIST_CAUSTICS(X) KERNEL_LIST_OPENINGS(X) KERNEL_LIST_CHAINS(X)
 
 /* KERNEL_pt_start_paths, ...: the values of Step.kernel. */
 #define KERNEL_ENUMERATE(name, count, ...) KERNEL_##name,

@@ -44,7 +44,8 @@ SHARED_FUNCTION float opening_pdf(Opening opening, Vec3 p, Vec3 w)
     return 1.0f / (area * float_abs(cosine));
 }
 
-/* By how much more rays of the light that are drawn through the opening come along w (unit) than those of light_emit. */
+/* By how much more rays of the light that are drawn through the opening come along w (unit) than those of
+ * light_emit. */
 SHARED_FUNCTION float opening_direction_ratio(const SceneView *scene, Opening opening, Vec3 w)
 {
     if (opening.side == 0.0f)
