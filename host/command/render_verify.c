@@ -67,7 +67,8 @@ static bool member_verify(const Integrator *integrator, const Scene *scene, cons
                      .backend = sides[0].backend,
                      .options = &few,
                      .film = &film,
-                     .guide = &scene->guide};
+                     .guide = &scene->guide,
+                     .hidden_light = scene_hides_light(scene)};
     StepList list = {0};
     few.chains.steps = STEPS_COMPARED;
     render_frame(integrator, scene, options, &run.frame);

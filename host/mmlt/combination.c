@@ -128,7 +128,7 @@ typedef struct CombinationTerms {
 static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
 {
     CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
-    if (samples[ESTIMATOR_PATHS] > 0.0)
+    if (samples[ESTIMATOR_PATHS] > 0.0 && !combination->hidden)
         terms.rare_most = weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
                                          RARE_DOUBT * terms.correlation * factor * combination->rare_chains /
                                              samples[ESTIMATOR_CHAINS]);
@@ -362,7 +362,7 @@ double combination_alone_error(const Combination *combination)
 {
     const double *best = combination->best,
                  alone[ESTIMATOR_COUNT] = {[ESTIMATOR_PATHS] = estimators_work(best) / estimator_cost(ESTIMATOR_PATHS)};
-    if (!(best[ESTIMATOR_PATHS] > 0.0))
+    if (!(best[ESTIMATOR_PATHS] > 0.0) || combination->hidden)
         return HUGE_VAL;
     return error_of(combination, alone, true, 1) / fmax(error_of(combination, best, true, 1), SPREAD_MIN);
 }

@@ -49,7 +49,7 @@ void step_rates_archive(Archive *archive, StepRates *rates);
 StepRates combination_rates(Combination *combination);
 
 /* Square error of path tracing alone, relative to that of the best division of the same work, which
- * combination_rates has found; infinite if that is not known. */
+ * combination_rates has found; infinite if that is not known, or if light may be hidden from it. */
 double combination_alone_error(const Combination *combination);
 
 #endif

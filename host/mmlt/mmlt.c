@@ -100,6 +100,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
     for (int replica = 0; replica < REPLICAS; ++replica) {
         if (!combination_init(&mmlt->combinations[replica], &mmlt->film, error))
             return false;
+        mmlt->combinations[replica].hidden = mmlt->run->hidden_light;
         mmlt->combinations[replica].shown = mmlt->options.shown;
         mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;
     }

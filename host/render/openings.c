@@ -24,7 +24,7 @@
 
 /* The part of the light subpaths of lights at infinity that is divided by the light that they bring, without what is
  * between smooth specular surfaces; the rest is divided as without openings. */
-#define BY_LIGHT 0.75
+#define BY_LIGHT 0.5
 
 typedef struct OpeningPass {
     const RenderRun *run;

@@ -333,7 +333,8 @@ bool render_film(const RenderTask *task, Film *film, RenderResult *result, Error
                      .options = options,
                      .callbacks = task->callbacks,
                      .film = film,
-                     .guide = &scene->guide};
+                     .guide = &scene->guide,
+                     .hidden_light = scene_hides_light(scene)};
     run.crop_pixels = film_pixels(film);
     memset(result, 0, sizeof *result);
     render_frame(integrator, scene, options, &run.frame);

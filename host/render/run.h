@@ -22,6 +22,7 @@ typedef struct RenderRun {
     const RenderCallbacks *callbacks; /* may be NULL */
     FrameParams frame; /* from render_frame */
     const Guide *guide; /* the scene's */
+    bool hidden_light; /* scene_hides_light */
     PhotonMap photons;
     Film *film;
     Film *halves; /* two films of which `film` is the sum, by render_run_gather; NULL: it is added to itself */

@@ -252,6 +252,19 @@ bool scene_has_delta(const Scene *scene)
     return false;
 }
 
+bool scene_has_invisible_light(const Scene *scene)
+{
+    for (size_t i = 0; i < scene->lights.count; ++i)
+        if ((ARRAY_AT(&scene->lights, Light, i).flags & LIGHT_INVISIBLE) != 0)
+            return true;
+    return false;
+}
+
+bool scene_hides_light(const Scene *scene)
+{
+    return scene_has_delta(scene) && ((scene->features & FEATURE_DELTA_LIGHT) != 0 || scene_has_invisible_light(scene));
+}
+
 /* Of hair, whose frame follows the tangent. */
 static ulong hair_features(const Material *m)
 {

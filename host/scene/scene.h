@@ -187,6 +187,13 @@ bool scene_material_is_rough(const Material *m);
 bool scene_material_has_delta(const Scene *scene, uint material);
 bool scene_has_delta(const Scene *scene);
 
+/* Whether it has area lights of alpha 0. */
+bool scene_has_invisible_light(const Scene *scene);
+
+/* Whether there may be light that path tracing by itself cannot find, without photons: of lights that no ray hits, by way
+ * of smooth specular surfaces. */
+bool scene_hides_light(const Scene *scene);
+
 /* Sets the feature mask, of the kernels' frame too. */
 void scene_features_set(Scene *scene, ulong features);
 

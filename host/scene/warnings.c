@@ -18,14 +18,6 @@ static void strays_report(const Scene *scene)
                     count, count == 1 ? "reaches" : "reach", (double)strays, (double)others);
 }
 
-static bool has_invisible_light(const Scene *scene)
-{
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        if ((ARRAY_AT(&scene->lights, Light, i).flags & LIGHT_INVISIBLE) != 0)
-            return true;
-    return false;
-}
-
 void scene_advise(const Scene *scene, bool photons)
 {
     if (scene_has_delta(scene) && !photons && (scene->features & FEATURE_DELTA_LIGHT) != 0)
@@ -37,7 +29,7 @@ void scene_advise(const Scene *scene, bool photons)
         log_message(LOG_INFO, "light of lights without extent that passes smooth glass or mirrors, is scattered in a "
                               "medium and passes others after that is missing, and with pt all of theirs that passes "
                               "any before it is scattered: a small sphere in their place is found by mmlt");
-    if (scene_has_delta(scene) && has_invisible_light(scene))
+    if (scene_has_delta(scene) && scene_has_invisible_light(scene))
         log_message(LOG_INFO, "light of area lights with alpha 0 that passes smooth glass or mirrors both before and "
                               "after a rough surface is missing: without alpha it is found");
     strays_report(scene);

@@ -70,10 +70,12 @@ static void known_destroy(Known *known)
 
 /* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in the
  * tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are correlated.
- * factor: of the chains' variance in `all`. */
+ * None where light may be hidden from path tracing. factor: of the chains' variance in `all`. */
 static double rare_weight(const Combination *all, const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                           double factor)
 {
+    if (all->hidden)
+        return 0.0;
     double doubt = 2.0 * all->chains_correlation / samples[ESTIMATOR_CHAINS],
            chains = doubt * tile->spread[SERIES_RARE], all_chains = doubt * factor * all->rare_chains;
     return fmin(chains / (chains + tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS]),
@@ -148,6 +150,7 @@ START_TEST(test_weights_known)
     known_init(&pupil, 2);
     known_init(&others[0], 3);
     known_init(&others[1], 4);
+    teacher.combination.hidden = _i == 3;
     if (_i == 1)
         teacher.combination.ready[ESTIMATOR_PATHS] = false;
     Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
@@ -321,6 +324,9 @@ START_TEST(test_alone_known)
         }
         double best = picture_error(combination, combination->best, costs);
         TEST_NEAR(combination_alone_error(combination) / (expected / best), 1.0, 1e-6);
+        combination->hidden = true;
+        TEST_TRUE(combination_alone_error(combination) > DBL_MAX);
+        combination->hidden = false;
         TEST_TRUE(combination_weights_set(combination, alone) >= 1);
         for (size_t i = 0; i < combination_tile_count(combination); ++i)
             TEST_TRUE(combination->known[i].weight[ESTIMATOR_PATHS] == 1.0 && combination->known[i].paths_rare == 1.0);
@@ -531,7 +537,7 @@ TCase *combination_known_tests(void)
 {
     TCase *tcase = tcase_create("known");
     tcase_set_timeout(tcase, 60);
-    tcase_add_loop_test(tcase, test_weights_known, 0, 3);
+    tcase_add_loop_test(tcase, test_weights_known, 0, 4);
     tcase_add_test(tcase, test_errors_known);
     tcase_add_test(tcase, test_rates_adopted);
     tcase_add_test(tcase, test_plan_known);

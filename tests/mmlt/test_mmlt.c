@@ -1,6 +1,7 @@
 /* Metropolis light transport against bidirectional path tracing, from the first step: chains that start in proportion
  * to their contribution have the right mean, however few steps they make. Combined images are consistent. */
 #include "support/bidirectional.h"
+#include "support/room_scene.h"
 
 #include "backend/group.h"
 #include "backend_cpu.h"
@@ -385,6 +386,59 @@ static const char LAMP_IN_GLASS[] = BD_BEGIN
     "AttributeBegin Translate 0 0.2 0 Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.5 "
     "AttributeEnd\n" BD_GREY BD_FLOOR "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 3  4 -1 3  -4 4 3  4 4 3 ]\n";
 
+/* The sun, which no ray hits, shines through a window on a mirror that lies on the floor of a room. */
+static const char SUN_ON_MIRROR[] =
+    ROOM_SCENE "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ] \"float roughness\" 0 " ROOM_WALL(
+        "-0.6 0 0.01 1.2 0 0.01 -0.6 1.4 0.01 1.2 1.4 0.01");
+
+static bool hides_light(const char *text)
+{
+    RenderSetup setup = {.text = text};
+    Scene scene;
+    fixture_scene(&setup, &scene);
+    bool hides = scene_hides_light(&scene);
+    scene_destroy(&scene);
+    return hides;
+}
+
+/* Light is hidden where lights that no ray hits and smooth surfaces are together. */
+START_TEST(test_hides)
+{
+    ck_assert(hides_light(SUN_ON_MIRROR));
+    ck_assert(!hides_light(ROOM_SCENE));
+    ck_assert(!hides_light(LAMP_IN_GLASS));
+}
+END_TEST
+
+/* Light that path tracing cannot find is not missed: what it has not shown of rare light is no sign that there is none. */
+START_TEST(test_hidden)
+{
+    enum { SEEDS = 6, SIDE = 32 };
+    PictureGroups expected, got;
+    double mean[2], error[2];
+    GroupSetup setup = {.groups = SEEDS,
+                        .render = {.text = SUN_ON_MIRROR,
+                                   .width = SIDE,
+                                   .height = SIDE,
+                                   .samples = 64,
+                                   .max_depth = 5,
+                                   .threads = 2,
+                                   .integrator = integrator_bdpt()}};
+    groups_render(&setup, &expected);
+    setup.render.integrator = integrator_mmlt();
+    setup.render.samples = 128;
+    groups_render(&setup, &got);
+    groups_block(&expected, 0, 0, SIDE, SIDE, &mean[0], &error[0]);
+    groups_block(&got, 0, 0, SIDE, SIDE, &mean[1], &error[1]);
+    ck_assert_msg(fabs(mean[1] - mean[0]) < 3.0 * hypot(error[0], error[1]), "%g +- %g by mmlt, %g +- %g by bdpt",
+                  mean[1], error[1], mean[0], error[0]);
+    ck_assert_msg(hypot(error[0], error[1]) < 0.04 * mean[0], "%g +- %g by mmlt, %g +- %g by bdpt", mean[1], error[1],
+                  mean[0], error[0]);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+END_TEST
+
 /* Because the replicas learn from each other, the image is a ratio of dependent sums: consistent, not unbiased. Means
  * of many short renderings, which have most of the bias, against bidirectional path tracing. A rendering has at least
  * two generations. */
@@ -453,6 +507,9 @@ int main(void)
     tcase_add_test(counts, test_groups);
     tcase_add_loop_test(case_make(suite, "slope"), test_slope, 0, 6);
     tcase_add_loop_test(case_make(suite, "brightness"), test_brightness, 0, 8);
+    TCase *hidden = case_make(suite, "hidden");
+    tcase_add_test(hidden, test_hides);
+    tcase_add_test(hidden, test_hidden);
     tcase_add_loop_test(case_make(suite, "bias"), test_bias, 0, 2);
     return test_run(suite);
 }
