@@ -3,7 +3,7 @@
  * p[i] / a[i], with the log-likelihood sum p[i] log(p[i] / a[i]). So the search is for rectangles, in planes
  * perpendicular to an axis, by which that grows most: at first all rays are in a group whose area is that of the
  * disc, and then, time and again, the best rectangle for a part of any group makes a group of its own. */
-#include "render/opening_search.h"
+#include "render/opening_fit.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,16 +4,7 @@
 
 #include "base/error.h"
 #include "layout/openings.h"
-
-#include <stdbool.h>
-#include <stddef.h>
-
-/* A ray from infinity that brings light where it is wanted. */
-typedef struct FarRay {
-    Vec3 origin, direction; /* where it arrives, and the way back; direction unit */
-    float weight; /* how much light; > 0 */
-    uint group; /* used by openings_fit */
-} FarRay;
+#include "render/opening_search.h"
 
 /* Fills in up to `capacity` openings but for their light, and sets *count: none unless they reduce the variance by
  * much, compared with rays that start on a disc of that radius. `side` is 0 if light comes from both sides. Fails

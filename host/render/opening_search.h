@@ -2,7 +2,17 @@
 #ifndef TWINLIGHT_RENDER_OPENING_SEARCH_H
 #define TWINLIGHT_RENDER_OPENING_SEARCH_H
 
-#include "render/opening_fit.h"
+#include "math/vec.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A ray from infinity that brings light where it is wanted. */
+typedef struct FarRay {
+    Vec3 origin, direction; /* where it arrives, and the way back; direction unit */
+    float weight; /* how much light; > 0 */
+    uint group; /* used by openings_fit */
+} FarRay;
 
 /* A rectangle must be crossed by that many rays. */
 #define RAYS_MIN 32
