@@ -22,8 +22,8 @@
 /* Openings of a light. */
 #define EACH_MAX 6u
 
-/* The part of the light subpaths of lights at infinity that is divided by the light that they bring, without what is
- * between smooth specular surfaces; the rest is divided as without openings. */
+/* The part of the light subpaths of lights at infinity that is divided by the light that they bring to receivers; the
+ * rest is divided as without openings, for the light that comes by way of smooth surfaces. */
 #define BY_LIGHT 0.5
 
 typedef struct OpeningPass {
