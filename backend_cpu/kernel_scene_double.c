@@ -43,6 +43,8 @@ enum {
         FilmParams: STRUCT_FilmParams,                                                                                 \
         PathParams: STRUCT_PathParams,                                                                                 \
         PhotonParams: STRUCT_PhotonParams,                                                                                 \
+        Opening *: STRUCT_Opening,                                                                                     \
+        OpeningParams: STRUCT_OpeningParams,                                                                           \
         PartitionParams: STRUCT_PartitionParams,                                                                       \
         PoolParams: STRUCT_PoolParams,                                                                                 \
         ChainParams: STRUCT_ChainParams,                                                                               \
