@@ -19,6 +19,10 @@
  * which are longer than those that miss the scene, bring little more: .1 ... .4 where light comes from all around. */
 #define SINGLE_MIN 0.5
 
+/* Nor has a light that subpaths bring to more than this part of the pixels: .03 ... .12 in such rooms, .24 ... .45
+ * otherwise. */
+#define LIT_MAX 0.18
+
 /* Openings of a light. */
 #define EACH_MAX 6u
 
@@ -131,7 +135,8 @@ static bool light_openings(OpeningPass *pass, uint light, size_t capacity, Openi
     double paths = (double)passes * PASS_PATHS;
     for (size_t i = 0; i < pass->ray_count; ++i)
         *brought += (double)pass->rays[i].weight / paths;
-    if ((double)pass->ray_count < SINGLE_MIN * (double)pass->lit)
+    if ((double)pass->ray_count < SINGLE_MIN * (double)pass->lit ||
+        (double)pass->lit * OPENING_SPLITS > LIT_MAX * paths)
         return true;
     size_t count;
     Opening *first = &openings->each[openings->count];
