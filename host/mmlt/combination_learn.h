@@ -75,8 +75,7 @@ typedef struct Combination {
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */
-    bool
-        hidden; /* there may be light that path tracing cannot find, so of rare light it shows nothing but what it clamps */
+    bool hidden; /* light that path tracing cannot find may exist: of rare light it shows only what it clamps */
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it, or
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;

@@ -1,6 +1,7 @@
 #include "render/opening_search.h"
 
 #include "base/sample_statistics.h"
+#include "geometry/ray.h"
 
 #include <float.h>
 #include <math.h>
@@ -27,7 +28,7 @@
 
 double vec3_along(Vec3 v, int axis)
 {
-    return axis == 0 ? (double)v.x : axis == 1 ? (double)v.y : (double)v.z;
+    return (double)vec3_component(v, (uint)axis);
 }
 
 /* Where the ray's line crosses the plane; false if it is parallel to it. */

@@ -11,11 +11,6 @@
 /* Rays that are as good as parallel to an opening are not drawn through it. */
 #define OPENING_COSINE_MIN 1e-4f
 
-SHARED_FUNCTION float opening_axis_of(Vec3 v, uint axis)
-{
-    return axis == 0u ? v.x : axis == 1u ? v.y : v.z;
-}
-
 SHARED_FUNCTION Vec3 opening_mirrored(Vec3 v, uint axis)
 {
     return vec3(axis == 0u ? -v.x : v.x, axis == 1u ? -v.y : v.y, axis == 2u ? -v.z : v.z);
@@ -24,7 +19,7 @@ SHARED_FUNCTION Vec3 opening_mirrored(Vec3 v, uint axis)
 /* Whether light along w comes from the opening's inner side. */
 SHARED_FUNCTION bool opening_from_inside(Opening opening, Vec3 w)
 {
-    return opening_axis_of(w, opening.axis) * opening.side > 0.0f;
+    return vec3_component(w, opening.axis) * opening.side > 0.0f;
 }
 
 /* Density, per area perpendicular to w (unit), of the ray that passes p along w among those drawn through the
@@ -32,12 +27,12 @@ SHARED_FUNCTION bool opening_from_inside(Opening opening, Vec3 w)
 SHARED_FUNCTION float opening_pdf(Opening opening, Vec3 p, Vec3 w)
 {
     uint u_axis = opening.axis == 2u ? 0u : opening.axis + 1u, v_axis = opening.axis == 0u ? 2u : opening.axis - 1u;
-    float cosine = opening_axis_of(w, opening.axis);
+    float cosine = vec3_component(w, opening.axis);
     if (!(float_abs(cosine) > OPENING_COSINE_MIN))
         return 0.0f;
-    float along = (opening.at - opening_axis_of(p, opening.axis)) / cosine;
-    float u = opening_axis_of(p, u_axis) + along * opening_axis_of(w, u_axis);
-    float v = opening_axis_of(p, v_axis) + along * opening_axis_of(w, v_axis);
+    float along = (opening.at - vec3_component(p, opening.axis)) / cosine;
+    float u = vec3_component(p, u_axis) + along * vec3_component(w, u_axis);
+    float v = vec3_component(p, v_axis) + along * vec3_component(w, v_axis);
     if (u < opening.u_low || u > opening.u_high || v < opening.v_low || v > opening.v_high)
         return 0.0f;
     float area = (opening.u_high - opening.u_low) * (opening.v_high - opening.v_low);
@@ -92,7 +87,7 @@ SHARED_FUNCTION bool opening_from_infinity(const SceneView *scene, Opening openi
         emission->pdf_w = environment_pdf_w(scene, opening.light, vec3_negate(emission->w));
     }
     light_emit_from_far(scene, passed, emission);
-    return float_abs(opening_axis_of(emission->w, opening.axis)) > OPENING_COSINE_MIN && emission->pdf_w > 0.0f &&
+    return float_abs(vec3_component(emission->w, opening.axis)) > OPENING_COSINE_MIN && emission->pdf_w > 0.0f &&
            float_finite(emission->pdf_w) && !vec3_is_zero(emission->radiance);
 }
 
