@@ -1,6 +1,7 @@
 #include "mmlt/combination.h"
 
 #include "camera/film_sum.h"
+#include "mmlt/combination_rare.h"
 #include "mmlt/tuning.h"
 
 #include <math.h>
@@ -32,7 +33,8 @@ bool combination_init(Combination *combination, const Film *film, Error *error)
         if (!pixel_series_init(&combination->light[s], combination_patch_count(combination), 1, true, error) ||
             !pixel_series_init(&combination->sums[s], combination_tile_count(combination), 1, true, error))
             return false;
-    return pixel_series_init(&combination->direct, combination_patch_count(combination), 1, true, error);
+    return pixel_series_init(&combination->direct, combination_patch_count(combination), 1, true, error) &&
+           pixel_series_init(&combination->rare_whole, 1, 1, true, error);
 }
 
 static void shareable_destroy(Combination *combination)
@@ -62,6 +64,7 @@ void combination_destroy(Combination *combination)
         pixel_series_destroy(&combination->sums[s]);
     }
     pixel_series_destroy(&combination->direct);
+    pixel_series_destroy(&combination->rare_whole);
     if (!combination->shares)
         shareable_destroy(combination);
     free(combination->earlier[0]);
@@ -76,6 +79,7 @@ void combination_archive(Archive *archive, Combination *combination)
         pixel_series_archive(archive, &combination->sums[s]);
     }
     pixel_series_archive(archive, &combination->direct);
+    pixel_series_archive(archive, &combination->rare_whole);
     if (!combination->shares)
         archive_bytes(archive, combination->known, combination_tile_count(combination) * sizeof *combination->known);
     for (int i = 0; i < 2; ++i)
@@ -90,6 +94,7 @@ void combination_archive(Archive *archive, Combination *combination)
     ARCHIVE_FIELD(archive, combination->best);
     ARCHIVE_FIELD(archive, combination->weight);
     ARCHIVE_FIELD(archive, combination->paths_rare);
+    archive_flags(archive, &combination->rare_missed, 1, "whether path tracing misses rare light");
 }
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
@@ -128,7 +133,7 @@ typedef struct CombinationTerms {
 static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
 {
     CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
-    if (samples[ESTIMATOR_PATHS] > 0.0 && !combination->hidden)
+    if (samples[ESTIMATOR_PATHS] > 0.0 && !combination_rare_hidden(combination))
         terms.rare_most = weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
                                          RARE_DOUBT * terms.correlation * factor * combination->rare_chains /
                                              samples[ESTIMATOR_CHAINS]);
@@ -362,7 +367,7 @@ double combination_alone_error(const Combination *combination)
 {
     const double *best = combination->best,
                  alone[ESTIMATOR_COUNT] = {[ESTIMATOR_PATHS] = estimators_work(best) / estimator_cost(ESTIMATOR_PATHS)};
-    if (!(best[ESTIMATOR_PATHS] > 0.0) || combination->hidden)
+    if (!(best[ESTIMATOR_PATHS] > 0.0) || combination_rare_hidden(combination))
         return HUGE_VAL;
     return error_of(combination, alone, true, 1) / fmax(error_of(combination, best, true, 1), SPREAD_MIN);
 }

@@ -56,6 +56,7 @@ typedef struct Combination {
     int size[2], patches[2], tiles[2];
     PixelSeries light[SERIES_COUNT], sums[SERIES_COUNT]; /* luminances summed over patches, and over tiles */
     PixelSeries direct; /* over patches */
+    PixelSeries rare_whole; /* SERIES_RARE, summed over the image (mmlt/combination_rare.c) */
     CombinationTile *known; /* one per tile; may be shared, see combination_share */
     CombinationRow *rows; /* scratch */
     double *ratios; /* scratch, one per tile */
@@ -76,6 +77,7 @@ typedef struct Combination {
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */
     bool hidden; /* light that path tracing cannot find may exist: of rare light it shows only what it clamps */
+    bool rare_missed; /* the same, since path tracing has found significantly less rare light than the chains have */
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it, or
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;

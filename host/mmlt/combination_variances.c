@@ -2,6 +2,7 @@
 #include "mmlt/combination_variances.h"
 
 #include "base/sample_statistics.h"
+#include "mmlt/combination_rare.h"
 #include "mmlt/combination_stratified.h"
 #include "mmlt/tuning.h"
 
@@ -266,4 +267,5 @@ void combination_variances_update(Combination *combination, const Combination *o
         spreads_settle(combination, s);
     combination->rare_chains = relative_variance(combination, SERIES_RARE);
     combination->rare_paths = relative_variance(combination, SERIES_PATHS_RARE);
+    combination_rare_update(combination);
 }

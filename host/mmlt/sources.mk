@@ -7,6 +7,7 @@ libtwinlight_host_la_SOURCES += \
 	host/mmlt/chains_estimator.c host/mmlt/chains_estimator.h \
 	host/mmlt/combination.c host/mmlt/combination.h \
 	host/mmlt/combination_learn.c host/mmlt/combination_learn.h \
+	host/mmlt/combination_rare.c host/mmlt/combination_rare.h \
 	host/mmlt/combination_stratified.c host/mmlt/combination_stratified.h \
 	host/mmlt/combination_variances.c host/mmlt/combination_variances.h \
 	host/mmlt/combined_image.c host/mmlt/combined_image.h \

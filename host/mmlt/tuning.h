@@ -101,6 +101,12 @@
  * a chain has stayed; docs/TUNING.md. */
 #define RARE_DOUBT 2.0
 
+/* Path tracing finds too little of the rare light if the chains' in the whole image exceeds its own by this many of the chains'
+ * standard errors, and by this part of all light: chains of a few generations state errors that are too small. Its own error
+ * does not count: as long as it has found nothing, that is nothing; docs/TUNING.md. */
+#define RARE_MISSED_DEVIATIONS 3.0
+#define RARE_MISSED_PART 0.01
+
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
  * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0

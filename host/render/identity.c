@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Changes with what the archives of a rendering's state hold. */
-#define LAYOUT "4"
+#define LAYOUT "5"
 
 #ifdef KERNELS_IN_DOUBLE
 #define PRECISION " (double)"

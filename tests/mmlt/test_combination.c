@@ -459,6 +459,38 @@ START_TEST(test_fireflies)
 }
 END_TEST
 
+/* Path tracing finds none of the rare light, which is half of all (_i 0), all of it (1), all but 3 % (2) or all but 1.5 % (3), and
+ * states hardly any variance. No tile tells so: the chains' errors there are large. In the whole image they are small (_i 0, 1
+ * and 3), or alike in all tiles (2), so that the 3 % are not significant; and the 1.5 % of half of the light do not matter. Where
+ * it misses light, its own has no weight, and it is never alone. */
+START_TEST(test_rare_missed)
+{
+    static const struct {
+        double found, common, deviation;
+    } cases[] = {{0.0, 0.0, 0.8}, {1.0, 0.0, 0.8}, {0.97, 0.2, 0.8}, {0.985, 0.0, 0.2}};
+    Estimators estimators;
+    estimators_init(&estimators);
+    for (int g = 0; g < 20; ++g) {
+        double common = g % 2 == 0 ? cases[_i].common : -cases[_i].common;
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 0.5, 0.1);
+        for (size_t i = 0; i < PIXELS; ++i)
+            rare_set(&estimators, i, 0.5 * (1.0 + common) + cases[_i].deviation * noise(&estimators),
+                     0.5 * cases[_i].found + 0.01 * noise(&estimators));
+        generation(&estimators);
+    }
+    combination_rates(&estimators.combination);
+    double weight = estimators.combination.paths_rare, alone = combination_alone_error(&estimators.combination);
+    printf("rare light missed, %d: weight of path tracing's own %.3f, alone %.3g times the error\n", _i, weight, alone);
+    if (_i == 0)
+        ck_assert(weight == 0.0 && alone > DBL_MAX);
+    else
+        ck_assert(weight > 0.9 && alone < 2.0);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
 /* The plan gives time to the estimator with low variance: only path tracing, or only chains. The error of chains also
  * falls with the size of pools, so these get 0.45 of the time of both; path tracing gets its minimum, one twentieth. */
 START_TEST(test_plan)
@@ -587,6 +619,7 @@ int main(void)
     tcase_add_test(tcase, test_excess);
     tcase_add_loop_test(tcase, test_rare, 0, 2);
     tcase_add_test(tcase, test_fireflies);
+    tcase_add_loop_test(tcase, test_rare_missed, 0, 4);
     tcase_add_loop_test(tcase, test_plan, 0, 2);
     tcase_add_test(tcase, test_importance);
     tcase_add_loop_test(tcase, test_visits, 0, 2);
