@@ -6,6 +6,7 @@
 #include "light/delta.h"
 #include "path/opening_path.h"
 #include "render/opening_fit.h"
+#include "render/opening_frame.h"
 
 #include <stdlib.h>
 
@@ -13,6 +14,7 @@
 #define PASS_PATHS (4096u * OPENING_SPLITS)
 #define PASSES_MAX 8u
 #define RAYS_ENOUGH 512u
+#define PIXELS_MAX ((size_t)PASSES_MAX * (PASS_PATHS / OPENING_SPLITS))
 
 /* A light has openings if, of the pixels to which any subpath brings light, in at least this part only one does. In
  * rooms behind windows that is .7 ... .97. Otherwise connections find its light, and light subpaths through openings,
@@ -38,6 +40,10 @@ typedef struct OpeningPass {
     FarRay *rays; /* that have come */
     size_t ray_count;
     size_t lit; /* pixels of which a subpath has come to the light */
+    Vec3 *normals; /* of the surfaces that the first light's pixels see ... */
+    size_t normal_count;
+    Frame frame; /* ... and the openings' frame by them, once that is `known` */
+    bool known;
 } OpeningPass;
 
 static bool pass_init(OpeningPass *pass, const RenderRun *run, const Scene *scene, Error *error)
@@ -46,9 +52,10 @@ static bool pass_init(OpeningPass *pass, const RenderRun *run, const Scene *scen
     *pass = (OpeningPass){.run = run,
                           .lights = scene->lights.data,
                           .words = calloc((size_t)PASS_PATHS * OPENING_PATH_WORDS, sizeof *pass->words),
-                          .rays = malloc((size_t)PASSES_MAX * (PASS_PATHS / OPENING_SPLITS) * sizeof *pass->rays)};
-    if (!pass->words || !pass->rays)
-        return error_memory(error, (size_t)PASSES_MAX * (PASS_PATHS / OPENING_SPLITS) * sizeof *pass->rays, "openings");
+                          .rays = malloc(PIXELS_MAX * sizeof *pass->rays),
+                          .normals = malloc(PIXELS_MAX * sizeof *pass->normals)};
+    if (!pass->words || !pass->rays || !pass->normals)
+        return error_memory(error, PIXELS_MAX * sizeof *pass->rays, "openings");
     if (!recorder_init(&recorder, 2 + 3 * OPENING_SEGMENTS, error))
         return false;
     recorder_kernel(&recorder, KERNEL_opening_start, false);
@@ -68,6 +75,7 @@ static void pass_destroy(OpeningPass *pass)
     step_list_destroy(&pass->list);
     free(pass->words);
     free(pass->rays);
+    free(pass->normals);
 }
 
 static Vec3 vector_get(const OpeningPass *pass, uint field, uint item)
@@ -82,7 +90,7 @@ static float weight_get(const OpeningPass *pass, uint item)
 }
 
 /* Of the subpaths of a pixel, from item `first` on: keeps the one that has come to the light, if no other has. Where
- * many come, light subpaths are of no use. */
+ * many come, light subpaths are of no use. Keeps the normal of the surface that they all see. */
 static void rays_keep(OpeningPass *pass, uint first)
 {
     uint arrived = 0, last = first;
@@ -92,6 +100,8 @@ static void rays_keep(OpeningPass *pass, uint first)
             last = item;
         }
     pass->lit += arrived > 0;
+    if (!pass->known)
+        pass->normals[pass->normal_count++] = vector_get(pass, OPENING_PATH_NORMAL, first);
     if (arrived == 1)
         pass->rays[pass->ray_count++] =
             (FarRay){vector_get(pass, OPENING_PATH_ORIGIN, last), vector_get(pass, OPENING_PATH_DIRECTION, last),
@@ -119,6 +129,18 @@ static bool pass_run(OpeningPass *pass, uint light, uint number, bool *whole, Er
     return true;
 }
 
+/* From the world into the openings' frame, which is the same for all lights. */
+static void rays_turn(OpeningPass *pass)
+{
+    if (!pass->known)
+        pass->frame = opening_frame(pass->normals, pass->normal_count);
+    pass->known = true;
+    for (size_t i = 0; i < pass->ray_count; ++i) {
+        pass->rays[i].origin = frame_to_local(pass->frame, pass->rays[i].origin);
+        pass->rays[i].direction = frame_to_local(pass->frame, pass->rays[i].direction);
+    }
+}
+
 /* Adds the light's openings, at most `capacity`. *brought: the light that comes by it, of the mean subpath. */
 static bool light_openings(OpeningPass *pass, uint light, size_t capacity, OpeningParams *openings, double *brought,
                            bool *whole, Error *error)
@@ -130,7 +152,10 @@ static bool light_openings(OpeningPass *pass, uint light, size_t capacity, Openi
         if (!pass_run(pass, light, passes++, whole, error))
             return false;
     *brought = 0.0;
-    if (!*whole || pass->ray_count == 0)
+    if (!*whole)
+        return true;
+    rays_turn(pass);
+    if (pass->ray_count == 0)
         return true;
     double paths = (double)passes * PASS_PATHS;
     for (size_t i = 0; i < pass->ray_count; ++i)
@@ -204,6 +229,7 @@ bool openings_find(RenderRun *run, const Scene *scene, Error *error)
     pass_destroy(&pass);
     if (!done || !whole || openings.count == 0)
         return done;
+    openings.frame = pass.frame;
     if (count > 1)
         lights_divide(scene->lights.data, lights, brought, (uint)count, &openings);
     run->frame.openings = openings;

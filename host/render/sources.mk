@@ -16,6 +16,7 @@ libtwinlight_host_la_SOURCES += \
 	host/render/merge.c host/render/merge.h \
 	host/render/part.c host/render/part.h \
 	host/render/opening_fit.c host/render/opening_fit.h \
+	host/render/opening_frame.c host/render/opening_frame.h \
 	host/render/opening_search.c host/render/opening_search.h \
 	host/render/openings.c host/render/openings.h \
 	host/render/photon_grid.c host/render/photon_grid.h \

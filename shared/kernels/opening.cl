@@ -44,6 +44,7 @@ __kernel void opening_start(__global const FrameParams *restrict frame, __global
     state_store(paths, stride, OPENING_PATH_SEGMENTS, item, 0u);
     state_store(paths, stride, OPENING_PATH_SPLIT, item, 0u);
     state_store_float(paths, stride, OPENING_PATH_WEIGHT, item, 0.0f);
+    state_store_vec3(paths, stride, OPENING_PATH_NORMAL, item, vec3_splat(0.0f));
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
     if (!ray_traceable(ray.o, ray.d))
         return;
@@ -76,6 +77,8 @@ SHARED_FUNCTION bool opening_receive(const SceneView *scene, __global uint *rest
     if (receivers == OPENING_CONNECTING)
         return false;
     Random4 random = opening_random(frame, number, true, segments, 1u);
+    if (state_load(paths, stride, OPENING_PATH_SPLIT, item) == 0u)
+        state_store_vec3(paths, stride, OPENING_PATH_NORMAL, item, n);
     state_store(paths, stride, OPENING_PATH_SPLIT, item, 1u);
     if (receivers > 0u) {
         Vec2 u = vec2(random_float(random.x[0]), random_float(random.x[1]));

@@ -10,7 +10,7 @@
 /* Lights that can have openings. */
 #define OPENING_LIGHTS_MAX 4u
 
-/* A rectangle perpendicular to an axis of the world. */
+/* A rectangle perpendicular to an axis of OpeningParams.frame. */
 typedef struct Opening {
     uint light; /* whose subpaths it is for */
     uint axis; /* 0, 1, 2; the rectangle's u axis is the next in cyclic order, its v axis the one after */
@@ -22,6 +22,7 @@ typedef struct Opening {
 
 typedef struct OpeningParams {
     uint count; /* 0: there are none */
+    Frame frame; /* whose axes t, b and n are 0, 1 and 2 */
     Opening each[OPENINGS_MAX];
     /* Light subpaths of these lights, which may have no opening, are divided among them anew. */
     uint light_count;

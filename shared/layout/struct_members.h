@@ -249,6 +249,7 @@
     MEMBER(Opening, share)                                                                                             \
     STRUCT(OpeningParams)                                                                                              \
     MEMBER(OpeningParams, count)                                                                                       \
+    MEMBER(OpeningParams, frame)                                                                                       \
     MEMBER(OpeningParams, each)                                                                                        \
     MEMBER(OpeningParams, light_count)                                                                                 \
     MEMBER(OpeningParams, lights)                                                                                      \

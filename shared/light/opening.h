@@ -23,7 +23,7 @@ SHARED_FUNCTION bool opening_from_inside(Opening opening, Vec3 w)
 }
 
 /* Density, per area perpendicular to w (unit), of the ray that passes p along w among those drawn through the
- * opening. */
+ * opening. Here and below, of functions without a scene, p and w are in the openings' frame. */
 SHARED_FUNCTION float opening_pdf(Opening opening, Vec3 p, Vec3 w)
 {
     uint u_axis = opening.axis == 2u ? 0u : opening.axis + 1u, v_axis = opening.axis == 0u ? 2u : opening.axis - 1u;
@@ -39,19 +39,21 @@ SHARED_FUNCTION float opening_pdf(Opening opening, Vec3 p, Vec3 w)
     return 1.0f / (area * float_abs(cosine));
 }
 
-/* By how much more rays of the light that are drawn through the opening come along w (unit) than those of
- * light_emit. */
+/* By how much more rays of the light that are drawn through the opening come along w (unit, in the openings' frame)
+ * than those of light_emit. */
 SHARED_FUNCTION float opening_direction_ratio(const SceneView *scene, Opening opening, Vec3 w)
 {
     if (opening.side == 0.0f)
         return 1.0f;
     if (opening_from_inside(opening, w))
         return 0.0f;
+    Frame frame = scene->frame->openings.frame;
     Vec3 d = vec3_negate(w);
-    float pdf = environment_pdf_w(scene, opening.light, d);
+    float pdf = environment_pdf_w(scene, opening.light, frame_to_world(frame, d));
     if (!(pdf > 0.0f))
         return 1.0f;
-    return 1.0f + environment_pdf_w(scene, opening.light, opening_mirrored(d, opening.axis)) / pdf;
+    Vec3 mirrored = frame_to_world(frame, opening_mirrored(d, opening.axis));
+    return 1.0f + environment_pdf_w(scene, opening.light, mirrored) / pdf;
 }
 
 /* Density, per area perpendicular to w (unit), with which a ray of the light that passes p along w starts, if no aim
@@ -59,15 +61,16 @@ SHARED_FUNCTION float opening_direction_ratio(const SceneView *scene, Opening op
 SHARED_FUNCTION float light_opened_pdf_disc(const SceneView *scene, uint light, Vec3 p, Vec3 w)
 {
     __global const OpeningParams *openings = &scene->frame->openings;
+    Vec3 p_local = frame_to_local(openings->frame, p), w_local = frame_to_local(openings->frame, w);
     float rest = 1.0f, sum = 0.0f;
     for (uint i = 0u; i < openings->count; ++i) {
         Opening opening = openings->each[i];
         if (opening.light != light)
             continue;
         rest -= opening.share;
-        float pdf = opening_pdf(opening, p, w);
+        float pdf = opening_pdf(opening, p_local, w_local);
         if (pdf > 0.0f)
-            sum += opening.share * pdf * opening_direction_ratio(scene, opening, w);
+            sum += opening.share * pdf * opening_direction_ratio(scene, opening, w_local);
     }
     return rest * light_emit_pdf_passing(scene, light, p, w) + sum;
 }
@@ -76,18 +79,20 @@ SHARED_FUNCTION float light_opened_pdf_disc(const SceneView *scene, uint light, 
  * the light emits nothing from there. */
 SHARED_FUNCTION bool opening_from_infinity(const SceneView *scene, Opening opening, Vec2 u, LightEmission *emission)
 {
+    Frame frame = scene->frame->openings.frame;
     float x = opening.u_low + u.x * (opening.u_high - opening.u_low);
     float y = opening.v_low + u.y * (opening.v_high - opening.v_low);
     Vec3 passed = opening.axis == 0u   ? vec3(opening.at, x, y)
                   : opening.axis == 1u ? vec3(y, opening.at, x)
                                        : vec3(x, y, opening.at);
-    if (opening_from_inside(opening, emission->w)) {
-        emission->w = opening_mirrored(emission->w, opening.axis);
+    Vec3 w = frame_to_local(frame, emission->w);
+    if (opening_from_inside(opening, w)) {
+        emission->w = frame_to_world(frame, opening_mirrored(w, opening.axis));
         emission->radiance = environment_beyond(scene, opening.light, vec3_negate(emission->w));
         emission->pdf_w = environment_pdf_w(scene, opening.light, vec3_negate(emission->w));
     }
-    light_emit_from_far(scene, passed, emission);
-    return float_abs(vec3_component(emission->w, opening.axis)) > OPENING_COSINE_MIN && emission->pdf_w > 0.0f &&
+    light_emit_from_far(scene, frame_to_world(frame, passed), emission);
+    return float_abs(vec3_component(w, opening.axis)) > OPENING_COSINE_MIN && emission->pdf_w > 0.0f &&
            float_finite(emission->pdf_w) && !vec3_is_zero(emission->radiance);
 }
 

@@ -11,7 +11,8 @@
 #define OPENING_PATH_ORIGIN 5u /* of its last ray, 3 */
 #define OPENING_PATH_DIRECTION 8u /* of that ray, 3 */
 #define OPENING_PATH_SPLIT 11u /* 1: it is past its first receiver */
-#define OPENING_PATH_WORDS 12u
+#define OPENING_PATH_NORMAL 12u /* of the surface at that, towards either side, 3; zero: there is none */
+#define OPENING_PATH_WORDS 15u
 
 /* As many subpaths with consecutive numbers are the same up to their first receiver. */
 #define OPENING_SPLITS 5u

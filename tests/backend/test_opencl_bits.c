@@ -120,7 +120,7 @@ END_TEST
 START_TEST(test_bits_of_openings)
 {
     RenderedImage cpu, image;
-    RenderSetup setup = {.text = ROOM_SCENE, .samples = 3, .threads = 2, .integrator = integrator_bdpt()};
+    RenderSetup setup = {.text = ROOM_SCENE_TURNED, .samples = 3, .threads = 2, .integrator = integrator_bdpt()};
     if (!test_device_promises())
         return;
     fixture_render(&setup, &cpu);

@@ -136,6 +136,7 @@ static void add_openings(LightFixture *f, int which)
 {
     const float side = which == DISTANT ? 0.0f : 1.0f;
     f->scene.frame.openings = (OpeningParams){.count = 3,
+                                              .frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                               .each = {{0, 2, -1.5f, -0.4f, -1.2f, 1.3f, 0.2f, side, 0.3f},
                                                        {0, 2, -0.9f, -1.5f, -1.5f, 1.5f, 1.5f, 0.0f, 0.15f},
                                                        {0, 0, 0.7f, -0.9f, -2.5f, 0.6f, -0.5f, side, 0.1f}}};

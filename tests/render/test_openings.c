@@ -6,10 +6,12 @@
 
 #include "backend_cpu.h"
 #include "render/opening_fit.h"
+#include "render/opening_frame.h"
 #include "render/openings.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { RAYS = 1200, MOST = 6 };
 #define RADIUS 12.0f
@@ -130,6 +132,47 @@ START_TEST(test_none)
 }
 END_TEST
 
+/* ---- the frame --------------------------------------------------------------------------------------------------- */
+
+static Vec3 random_direction(unsigned short state[3])
+{
+    Vec3 v;
+    do
+        v = vec3(between(-1, 1, state), between(-1, 1, state), between(-1, 1, state));
+    while (!(vec3_dot(v, v) < 1.0f && vec3_dot(v, v) > 0.01f));
+    return vec3_normalize(v);
+}
+
+/* Normals of walls in a frame, turned from the world's by 33 degrees (_i 0) or not at all (1), and as many of round things:
+ * it is found again, the world's exactly. With nothing but a floor (2), that is perpendicular to an axis; without surfaces (3)
+ * the frame is the world's. */
+START_TEST(test_frame)
+{
+    const Vec3 axis = vec3_normalize(vec3(1.0f, 2.0f, 3.0f));
+    const float angle = _i == 0 || _i == 2 ? (float)(33.0 * M_PI / 180.0) : 0.0f;
+    Vec3 normals[RAYS], axes[3];
+    unsigned short state[3] = {4, 2, 9};
+    for (int k = 0; k < 3; ++k) { /* Rodrigues */
+        Vec3 v = vec3(k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f);
+        Vec3 turned = vec3_add(vec3_scale(v, cosf(angle)), vec3_scale(vec3_cross(axis, v), sinf(angle)));
+        axes[k] = angle > 0.0f ? vec3_mad(turned, (1.0f - cosf(angle)) * vec3_dot(axis, v), axis) : v;
+    }
+    for (size_t i = 0; i < RAYS; ++i) {
+        Vec3 wall = vec3_scale(axes[_i == 2 ? 2 : i % 3], i % 4 < 2 ? 1.0f : -1.0f);
+        normals[i] = _i == 3 ? vec3_splat(0.0f) : _i < 2 && i % 7 < 4 ? random_direction(state) : wall;
+    }
+    Frame frame = opening_frame(normals, RAYS);
+    const Vec3 found[3] = {frame.t, frame.b, frame.n};
+    for (int k = 0; k < 3; ++k) {
+        TEST_NEAR(vec3_dot(found[k], found[k]), 1.0, 1e-5);
+        TEST_NEAR(vec3_dot(vec3_cross(found[k], found[(k + 1) % 3]), found[(k + 2) % 3]), 1.0, 1e-5);
+        if (_i != 2 || k == 2)
+            ck_assert_double_gt((double)vec3_dot(found[k], axes[k]), _i == 0 ? 0.9999 : 0.999999);
+        ck_assert(_i == 0 || _i == 2 || memcmp(&found[k], &axes[k], sizeof(Vec3)) == 0);
+    }
+}
+END_TEST
+
 /* ---- a room ------------------------------------------------------------------------------------------------------- */
 
 static double relative_noise(const RenderedImage *a, const RenderedImage *b)
@@ -186,14 +229,15 @@ static OpeningParams found(const char *text)
     return run.frame.openings;
 }
 
-/* Both lights have the window; light subpaths are divided by the light that they bring, which a brighter sun's is more
+/* In a room that is turned in the world, they are in its frame; in another, in the world's. Both lights have the window; light subpaths are divided by the light that they bring, which a brighter sun's is more
  * of, beside what they have anyway. */
 START_TEST(test_room_found)
 {
     static const Window window = {0, 2.0, {-0.4, 1.0}, {0.4, 1.8}};
     double ratio[2];
     for (int bright = 0; bright < 2; ++bright) {
-        OpeningParams openings = found(bright ? ROOM_SCENE_BRIGHT : ROOM_SCENE);
+        OpeningParams openings = found(bright ? ROOM_SCENE_BRIGHT : _i == 0 ? ROOM_SCENE : ROOM_SCENE_TURNED);
+        TEST_NEAR(openings.frame.t.x, bright || _i == 0 ? 1.0 : 0.85, 1e-3);
         ck_assert_uint_eq(openings.count, 2);
         ck_assert_uint_eq(openings.light_count, 2);
         for (uint i = 0; i < 2; ++i) {
@@ -240,9 +284,10 @@ int main(void)
     tcase_add_loop_test(fit, test_window, 0, 3);
     tcase_add_test(fit, test_windows);
     tcase_add_test(fit, test_none);
+    tcase_add_loop_test(fit, test_frame, 0, 4);
     tcase_set_timeout(fit, 30);
     tcase_add_test(room, test_room);
-    tcase_add_test(room, test_room_found);
+    tcase_add_loop_test(room, test_room_found, 0, 2);
     tcase_add_loop_test(room, test_open_found, 0, 2);
     tcase_set_timeout(room, 60);
     suite_add_tcase(suite, fit);
