@@ -19,6 +19,9 @@ libtwinlight_kernels_la_SOURCES = \
 	backend_cpu/plain_kernels.h \
 	backend_cpu/curve_cluster.h \
 	backend_cpu/rays_embree.c backend_cpu/rays_embree.h \
+	backend_cpu/rays_embree_build.c \
+	backend_cpu/rays_embree_callbacks.c \
+	backend_cpu/rays_embree_scene.h \
 	backend_cpu/triangle_cluster.c backend_cpu/triangle_cluster.h
 libtwinlight_kernels_la_CPPFLAGS = $(AM_CPPFLAGS) $(KERNEL_CPPFLAGS)
 libtwinlight_kernels_la_CFLAGS = $(AM_CFLAGS) $(KERNEL_CFLAGS) $(INLINE_CFLAGS)
