@@ -2,16 +2,21 @@
 LDADD = tests/libfixtures.la libtwinlight_cpu.la $(OCL_LIBRARY) libtwinlight_host.la $(EMBREE_LIBS) $(OPENCL_LIBS) \
 	$(CHECK_LIBS) $(MPFR_LIBS) -lm
 
+# Those that take longest come first, so that all processors have work until the end.
 if HAVE_CHECK
+if HAVE_OPENCL
+check_PROGRAMS += tests/test_opencl
+endif
 check_PROGRAMS += \
-	tests/test_archive \
-	tests/test_light_guide \
-	tests/test_analytic \
-	tests/test_bench \
+	tests/test_mmlt \
 	tests/test_bidirectional \
 	tests/test_caustic \
-	tests/test_combination \
 	tests/test_bsdf \
+	tests/test_analytic \
+	tests/test_archive \
+	tests/test_light_guide \
+	tests/test_bench \
+	tests/test_combination \
 	tests/test_bvh \
 	tests/test_chain \
 	tests/test_chain_population \
@@ -23,7 +28,6 @@ check_PROGRAMS += \
 	tests/test_error \
 	tests/test_film \
 	tests/test_geometry \
-	tests/test_mmlt \
 	tests/test_numerics \
 	tests/test_openings \
 	tests/test_group \
@@ -54,9 +58,6 @@ check_PROGRAMS += \
 	tests/test_verify
 if HAVE_ASSIMP
 check_PROGRAMS += tests/test_gltf
-endif
-if HAVE_OPENCL
-check_PROGRAMS += tests/test_opencl
 endif
 TESTS += $(check_PROGRAMS)
 check_LTLIBRARIES = tests/libfixtures.la
@@ -332,7 +333,7 @@ tests_test_texture_SOURCES = tests/image/test_texture.c \
 	tests/image/test_texture_image.c \
 	tests/image/test_texture_procedural.c
 
-# Rules of the source tree, and end-to-end tests of the program.
+# Rules of the source tree, and end-to-end tests of the program. test_devices.sh comes late: test_cli.sh has built what both need.
 script_tests = \
 	tests/check_layers.sh \
 	tests/check_parameters.sh \
@@ -341,11 +342,11 @@ script_tests = \
 	tests/command/test_checkpoint.sh \
 	tests/command/test_cli.sh \
 	tests/command/test_convert.sh \
-	tests/command/test_devices.sh \
 	tests/command/test_hostile.sh \
 	tests/command/test_merge.sh \
 	tests/command/test_mpi.sh \
 	tests/command/test_outputs.sh \
+	tests/command/test_devices.sh \
 	tests/command/test_readme.sh
 dist_check_SCRIPTS += $(script_tests)
 TESTS += $(script_tests)

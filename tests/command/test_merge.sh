@@ -90,9 +90,9 @@ fi
 
 # ---- interruptions --------------------------------------------------------------------------------------------------
 
-small --integrator=pt --samples=3000 -o single.exr "$scene"
+small --integrator=pt --samples=1000 -o single.exr "$scene"
 begin() {
-    $with_signals "$program" render --resolution=40x30 --no-png --integrator=pt --samples=3000 --shard=2/2 --threads=1 \
+    $with_signals "$program" render --resolution=40x30 --no-png --integrator=pt --samples=1000 --shard=2/2 --threads=1 \
         --checkpoint=stop.ck --resume=stop.ck --save-every=0.05s -o stop-2.part "$scene" >out 2>err &
     process=$!
 }
@@ -102,7 +102,7 @@ kill -s TERM $process
 wait $process
 [ $? -eq 130 ]
 result 'a shard that is stopped: exit status' $?
-small --integrator=pt --samples=3000 --shard=1/2 -o stop-1.part "$scene"
+small --integrator=pt --samples=1000 --shard=1/2 -o stop-1.part "$scene"
 merged merged.exr stop-1.part stop-2.part
 says 'of 2 parts are of shards that were stopped early, the first stop-2.part' 'a stopped shard'
 begin
@@ -111,9 +111,9 @@ result 'a shard that goes on: exit status' $?
 merged merged.exr stop-1.part stop-2.part
 same merged.exr single.exr 'a shard that was stopped and resumed'
 expect 1 'stop.ck is of --shard=2/2, and this rendering of --shard=1/2' render --resolution=40x30 --integrator=pt \
-    --samples=3000 --shard=1/2 --resume=stop.ck -o no.part "$scene"
+    --samples=1000 --shard=1/2 --resume=stop.ck -o no.part "$scene"
 expect 1 'stop.ck is of --shard=2/2, and this rendering of --shard=none' render --resolution=40x30 --integrator=pt \
-    --samples=3000 --resume=stop.ck -o no.exr "$scene"
+    --samples=1000 --resume=stop.ck -o no.exr "$scene"
 file_missing no.part
 
 # ---- time -----------------------------------------------------------------------------------------------------------

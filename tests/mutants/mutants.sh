@@ -14,6 +14,7 @@ Runs the tests against planted faults: those with the numbers given, or all that
   -t TABLE    write results as a table (mutants.md in the working folder)
   -l          what `make check` does not see, show to `make check-long`, too: hours
   -n          plant and compare with the list only; build and run nothing
+  -b          plant and build; run nothing
   -h          this text
 
 A fault is killed when a test program fails, crashes or runs out of time. The build is of the CPU backend alone: faults in
@@ -21,8 +22,8 @@ shared/ are not in the sources of an OpenCL program, and a difference between th
 TEXT
 }
 
-work=mutants.work program='' jobs=1 table='' long='' dry=''
-while getopts w:p:j:t:lnh option; do
+work=mutants.work program='' jobs=1 table='' long='' dry='' built=''
+while getopts w:p:j:t:lnbh option; do
     case $option in
     w) work=$OPTARG ;;
     p) program=$OPTARG ;;
@@ -30,6 +31,7 @@ while getopts w:p:j:t:lnh option; do
     t) table=$OPTARG ;;
     l) long=yes ;;
     n) dry=yes ;;
+    b) built=yes ;;
     h) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
     esac
@@ -55,9 +57,18 @@ plant() {
             text = substr(text, at + length(part))
         return count
     }
+    function balanced(text) { return gsub(/\(/, "", text) == gsub(/\)/, "", text) }
+    # Whether `text` remains in force in parentheses or, with its semicolon, in braces; finds most that do not.
+    function plantable(text) {
+        if (text ~ /;$/)
+            return text !~ /^[A-Za-z_][A-Za-z0-9_]* \**[a-z_]+(\[.*)? = / # a declaration
+        return balanced(text) && text !~ /^(if |else|return |#|[?|\/,.:={]|&&|\* )/ && text !~ /([?|\/,:=]|&&)$/
+    }
     function finish(    from, at) {
         if (number == "" || file != name)
             return
+        if (!plantable(original))
+            complain("not an expression or a statement: " original)
         from = 1
         if (context != "") {
             if (occurrences(text, context) != 1)
@@ -184,6 +195,7 @@ for goal in all check; do # one after the other: both make the libraries
         exit 1
     }
 done
+[ ! "$built" ] || exit 0
 
 # ---- running ----------------------------------------------------------------------------------------------------------
 
