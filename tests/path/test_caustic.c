@@ -329,6 +329,27 @@ START_TEST(test_found)
 }
 END_TEST
 
+/* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every bead
+ * by itself. */
+START_TEST(test_found_among_many)
+{
+    enum { COUNT = 64 };
+    char text[16384] = BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 0 1 0 ]\n" SMOOTH_GLASS;
+    size_t used = strlen(text);
+    for (int i = 0; i < COUNT; ++i)
+        used +=
+            (size_t)snprintf(text + used, sizeof text - used,
+                             "AttributeBegin Translate %g %g %g Shape \"sphere\" \"float radius\" 0.002 AttributeEnd\n",
+                             0.4 * (i % 8) - 1.4, 0.1 * (i * 3 % 7) - 0.3, 0.4 * (i / 8) - 1.4);
+    const RenderSetup setup = {.text = text, .samples = 1, .threads = 1, .photons = 32768};
+    RenderedImage image;
+    fixture_render(&setup, &image);
+    printf("many beads: %u photons\n", image.result.photons);
+    ck_assert_uint_gt(image.result.photons, setup.photons / 4);
+    fixture_destroy(&image);
+}
+END_TEST
+
 /* Photons grow in number while more of them predict better: not where nearly all predictions hit the light, where a
  * quarter of them predict as well, or where all that are allowed have been made. */
 START_TEST(test_growth)
@@ -408,6 +429,9 @@ int main(void)
     tcase_add_test(photons, test_grid);
     tcase_add_test(photons, test_growth);
     suite_add_tcase(suite, photons);
+    TCase *search = tcase_create("search");
+    tcase_add_test(search, test_found_among_many);
+    suite_add_tcase(suite, search);
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
     tcase_set_timeout(pictures, 300);
