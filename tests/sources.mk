@@ -77,8 +77,7 @@ check-long:
 	srcdir='$(srcdir)' $(srcdir)/tests/test_recipes.sh
 	TWINLIGHT_TEST_EFFORT=$(EFFORT) $(MAKE) $(AM_MAKEFLAGS) check TESTS='$(LONG_TESTS)'
 
-# Whether the tests detect faults that are planted one at a time: mutants.sh -h. Takes a quarter of an hour; not part of
-# any check.
+# Whether the tests detect faults that are planted one at a time: mutants.sh -h. Takes hours; not part of any check.
 .PHONY: mutants
 mutants: twinlight$(EXEEXT)
 	$(srcdir)/tests/mutants/mutants.sh -w mutants.work -p ./twinlight$(EXEEXT) -t mutants.md
