@@ -2,6 +2,7 @@
 
 #include "mmlt/tuning.h"
 
+#include <float.h>
 #include <math.h>
 
 /* The mean of a series in the whole image, in luminances summed over its pixels. */
@@ -14,16 +15,20 @@ static double image_light(const Combination *combination, int s)
 }
 
 /* Variances of tiles do not tell how well the whole is known, since errors of chains are alike in many tiles. So the whole
- * has a series of its own. Its latest picture is what has changed the mean of the tiles since. */
+ * has a series of its own. Its latest picture is what has changed the mean of the tiles since; none that is too bright for a
+ * series. */
 static void image_learn(Combination *combination)
 {
     PixelSeries *whole = &combination->rare_whole;
     double weight = pixel_series_weight(&combination->sums[SERIES_RARE], 0), before = pixel_series_weight(whole, 0);
     if (!(weight > before))
         return;
-    double light = weight * image_light(combination, SERIES_RARE) - before * (double)whole->mean[0];
-    float latest = (float)(light / (weight - before));
-    pixel_series_add(whole, &latest, NULL, weight - before);
+    double light = weight * image_light(combination, SERIES_RARE) - before * (double)whole->mean[0],
+           latest = light / (weight - before);
+    if (!(fabs(latest) < (double)FLT_MAX))
+        return;
+    float picture = (float)latest;
+    pixel_series_add(whole, &picture, NULL, weight - before);
 }
 
 void combination_rare_update(Combination *combination)
