@@ -21,9 +21,9 @@ Hit rays_embree_closest(const RaysEmbree *rays, const Ray *ray);
 bool rays_embree_occluded(const RaysEmbree *rays, const Ray *ray);
 
 /* The same for state buffers (layout/state.h) with stride `stride`: for `count` items, listed in `items`, or the first
- * ones if that is NULL or missing. Rays with t_max <= 0 are not traced. In scenes with media rays go on behind interfaces
- * (geometry/media_walk.h), and only there `diagnostics`, BUFFER_DIAGNOSTICS, is not ignored. Returns the number of rays
- * traced. */
+ * ones if that is NULL or missing. Rays with t_max <= 0 are not traced. In scenes with media rays go on behind
+ * interfaces (geometry/media_walk.h), and only there `diagnostics`, BUFFER_DIAGNOSTICS, is not ignored. Returns the
+ * number of rays traced. */
 uint rays_embree_trace_closest(const RaysEmbree *rays, const uint *ray_words, uint *hit_words, uint *diagnostics,
                                const uint *items, uint count, uint stride);
 uint rays_embree_trace_shadow(const RaysEmbree *rays, uint *shadow_words, uint *diagnostics, uint count, uint stride);

@@ -151,8 +151,8 @@ static void curves_free(ObjectRays *object)
 
 #endif
 
-/* Splits the primitives that are not in curves' clusters into triangles, which are clustered, and others. `sorted` has room for
- * all. */
+/* Splits the primitives that are not in curves' clusters into triangles, which are clustered, and others. `sorted` has
+ * room for all. */
 static bool others_sort(ObjectRays *object, Object record, uint *sorted, Error *error)
 {
     const SceneView *view = &object->rays->view;

@@ -1,4 +1,5 @@
-/* What Embree calls while it builds its hierarchies and walks them: boxes with a margin, and the shared primitive test. */
+/* What Embree calls while it builds its hierarchies and walks them: boxes with a margin, and the shared primitive
+ * test. */
 #include "rays_embree_scene.h"
 
 #include "backend/instance_bounds.h"

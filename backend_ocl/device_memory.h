@@ -57,8 +57,8 @@ bool device_memory_init(DeviceMemory *memory, cl_context context, cl_command_que
 /* Allocates state for this list, unless the existing one suffices. No command may be in flight. */
 bool device_memory_reserve(DeviceMemory *memory, const StepList *list, Error *error);
 
-/* Items per batch of a list for which memory is reserved. Fewer than `batch` if the list has so many splats per item, as
- * those of chains, that a full batch of them would take gigabytes of pinned host memory. */
+/* Items per batch of a list for which memory is reserved. Fewer than `batch` if the list has so many splats per item,
+ * as those of chains, that a full batch of them would take gigabytes of pinned host memory. */
 uint device_memory_batch(const DeviceMemory *memory, const StepList *list);
 
 /* Splats per item: one for every STEP_SPLAT and one for the end of the list. */
@@ -69,7 +69,8 @@ uint step_list_splats(const StepList *list);
 bool device_memory_film_fits(const DeviceMemory *memory, size_t bytes);
 bool device_memory_reserve_film(DeviceMemory *memory, size_t bytes, Error *error);
 
-/* Copies a map of photons to the device unless it is there already. photons: may be NULL. No command may be in flight. */
+/* Copies a map of photons to the device unless it is there already. photons: may be NULL. No command may be in
+ * flight. */
 bool device_memory_photons(DeviceMemory *memory, const PhotonMap *photons, Error *error);
 
 void device_memory_destroy(DeviceMemory *memory);

@@ -171,8 +171,8 @@ typedef struct BackendStatistics {
 
 /* Receives splats. Functions are called by many threads concurrently. */
 typedef struct SplatSink {
-    /* Receives the splat buffer of a finished chunk: `count` items at `stride`, fields as in layout/state.h. NULL: nobody
-     * needs the splats. */
+    /* Receives the splat buffer of a finished chunk: `count` items at `stride`, fields as in layout/state.h. NULL:
+     * nobody needs the splats. */
     void (*splats)(void *context, const uint *splats, uint count, uint stride);
     /* Receives instead the sums made on a device (BackendOptions.film): `sum_words` words, laid out as in
      * camera/film_sum.h for the crop and film_exponent of the pass. NULL: not supported. */

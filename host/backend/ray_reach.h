@@ -6,8 +6,8 @@
 #include "layout/scene_view.h"
 
 /* Largest coordinate of ray origins for which boxes should be inflated: frame->scene.ray_reach, unless boxes would
- * become larger than most primitives; then a smaller value that covers the camera and 99 % of the world's primitives and
- * instances. */
+ * become larger than most primitives; then a smaller value that covers the camera and 99 % of the world's primitives
+ * and instances. */
 float ray_reach_inner(const SceneView *view, uint instance_count);
 
 /* Number of outliers: primitives and instances of the world that extend more than STRAY_FACTOR times as far from the

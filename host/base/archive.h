@@ -37,12 +37,12 @@ void archive_bytes(Archive *archive, void *bytes, size_t size);
 /* For what is known when restoring: fails, naming `what`, unless the value is the saved one. */
 void archive_same(Archive *archive, uint64_t value, const char *what);
 
-/* For a count that decides what memory is taken or which entries are read. Restoring fails, naming `what`, and leaves the
- * count as it is unless least <= count <= most. */
+/* For a count that decides what memory is taken or which entries are read. Restoring fails, naming `what`, and leaves
+ * the count as it is unless least <= count <= most. */
 void archive_count(Archive *archive, uint32_t *count, uint32_t least, uint32_t most, const char *what);
 
-/* For numbers that must lie in a range. Restoring fails, naming `what`, unless least <= number <= most for all of them; NaN
- * never is. What was read is in them all the same. */
+/* For numbers that must lie in a range. Restoring fails, naming `what`, unless least <= number <= most for all of them;
+ * NaN never is. What was read is in them all the same. */
 void archive_doubles(Archive *archive, double *numbers, size_t count, NumberRange range, const char *what);
 void archive_floats(Archive *archive, float *numbers, size_t count, NumberRange range, const char *what);
 
@@ -52,8 +52,8 @@ void archive_flags(Archive *archive, bool *flags, size_t count, const char *what
 /* A number of which every byte differs: read in another byte order it is another one. */
 #define BYTE_ORDER_MARK 0x0102030405060708u
 
-/* The beginning of a file: its kind ("checkpoint"), and a mark of the byte order. Restoring fails for another kind, other byte
- * order or anything else; *other is then whether it is another kind of file of this program. */
+/* The beginning of a file: its kind ("checkpoint"), and a mark of the byte order. Restoring fails for another kind,
+ * other byte order or anything else; *other is then whether it is another kind of file of this program. */
 void archive_head(Archive *archive, const char *kind, bool *other);
 
 /* Fails with this message unless it has failed before. */

@@ -12,8 +12,8 @@ typedef struct ArchiveWriter {
     void *buffer;
 } ArchiveWriter;
 
-/* Begins a temporary file that is to replace the regular file `path`. threads: that may compress. *writer must stay where
- * it is. Call archive_writer_destroy even on failure. */
+/* Begins a temporary file that is to replace the regular file `path`. threads: that may compress. *writer must stay
+ * where it is. Call archive_writer_destroy even on failure. */
 bool archive_writer_begin(ArchiveWriter *writer, const char *path, int threads, Error *error);
 
 /* Ends the frame and synchronises to disk; fails if the archive has. The file still has its temporary name:
@@ -32,8 +32,8 @@ typedef struct ArchiveReader {
     bool ended; /* the frame is complete */
 } ArchiveReader;
 
-/* Opens a file and checks that it is whole: reads it to the end and compares the checksum. *reader must stay where it is.
- * On failure there is nothing to destroy. */
+/* Opens a file and checks that it is whole: reads it to the end and compares the checksum. *reader must stay where it
+ * is. On failure there is nothing to destroy. */
 bool archive_reader_open(ArchiveReader *reader, const char *path, Error *error);
 
 /* Whether everything has been restored and nothing is left over; the archive fails otherwise. */

@@ -13,7 +13,8 @@
 /* Installs the handlers. */
 bool interrupt_install(Error *error);
 
-/* Catches SIGUSR1 and SIGUSR2, too: the only ones that mpirun hands on to its processes without ending them soon after. */
+/* Catches SIGUSR1 and SIGUSR2, too: the only ones that mpirun hands on to its processes without ending them soon
+ * after. */
 bool interrupt_install_user(Error *error);
 
 /* Points to a flag that is 0, and 1 after a signal. */

@@ -13,7 +13,8 @@ typedef struct LargestValues {
 /* Keeps a value if it is one of the `wanted` largest so far. Not NaN. */
 void largest_values_add(LargestValues *largest, double value);
 
-/* The least value that is kept, which is the `wanted`-th largest once as many have been added. At least one must be kept. */
+/* The least value that is kept, which is the `wanted`-th largest once as many have been added. At least one must be
+ * kept. */
 static inline double largest_values_least(const LargestValues *largest)
 {
     return largest->heap[0];

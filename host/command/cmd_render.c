@@ -320,7 +320,8 @@ static int command_render(RenderCommand *command, Error *error)
     return status;
 }
 
-/* The main function of the other ranks, which need the options of backends alone. What is wrong with them is told by rank 0. */
+/* The main function of the other ranks, which need the options of backends alone. What is wrong with them is told by
+ * rank 0. */
 static int command_serve(const RenderCommand *command, OptionsEnd end, const Error *error)
 {
     const BackendOptions options = backend_options(command);

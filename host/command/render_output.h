@@ -35,7 +35,8 @@ bool render_output_name(RenderOutput *output, const char *image, bool want_png, 
 bool render_output_reserve(RenderOutput *output, const int crop[4], int threads, Error *error);
 void render_output_release(RenderOutput *output);
 
-/* The seconds that the first write will take, from the size of the picture and its layers. After render_output_reserve. */
+/* The seconds that the first write will take, from the size of the picture and its layers. After
+ * render_output_reserve. */
 double render_output_seconds(const RenderOutput *output);
 
 /* Writes both files from the current film. `samples_per_pixel` goes to the EXR header. After render_output_reserve. */

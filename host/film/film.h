@@ -26,13 +26,14 @@ typedef struct Film {
     int64_t *depth_sums;
     uint depth_kinds, depth_last;
     uint64_t light_samples; /* number of paths behind light_sums; 0: as many as samples of pixels */
-    /* Of all pixels' samples together, those that are complete: their `sums` hold all of their light. The rest are shown with
-     * what is in light_sums, which counts in proportion to their number. 0, or all pixels have the same number of samples. */
+    /* Of all pixels' samples together, those that are complete: their `sums` hold all of their light. The rest are
+     * shown with what is in light_sums, which counts in proportion to their number. 0, or all pixels have the same
+     * number of samples. */
     uint64_t complete_samples;
     uint reconstruction; /* RECONSTRUCTION_*, with the pixel filter: film_filter_set */
     FilmAxis axis_x, axis_y;
-    /* Samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h), and more that every pixel has
-     * (film_normalize): film_count. The memory for counts that have always been zero is not used. */
+    /* Samples per pixel of the crop, in units of film_sample_units (camera/film_spread.h), and more that every pixel
+     * has (film_normalize): film_count. The memory for counts that have always been zero is not used. */
     uint32_t *counts, every_count;
     uint64_t saturated; /* contributions clamped because they were too large */
     uint64_t vanished; /* contributions that are not black, but below half a unit in every channel */
@@ -52,8 +53,8 @@ void film_filter_set(Film *film, const FilmParams *params, const float *lookup);
 /* Largest number of samples per pixel. */
 uint64_t film_samples_most(uint reconstruction);
 
-/* An empty film with the size, crop, filter, quantum and threads of `model`, and with light sums if `model` has them (but no
- * rare or depth sums). */
+/* An empty film with the size, crop, filter, quantum and threads of `model`, and with light sums if `model` has them
+ * (but no rare or depth sums). */
 bool film_init_like(Film *film, const Film *model, Error *error);
 
 /* Allocates sums for splats with SPLAT_LIGHT. Only while the film is empty. */
@@ -107,21 +108,22 @@ bool film_merge(Film *film, const Film *from, Error *error);
 /* Exchanges `sums` and counts of two films of the same size. */
 void film_swap_own(Film *a, Film *b);
 
-/* For a film in which every pixel has `samples` samples, of which splats from the light are a part: divides each pixel's
- * sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes unless the
- * film spreads splats. */
+/* For a film in which every pixel has `samples` samples, of which splats from the light are a part: divides each
+ * pixel's sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes
+ * unless the film spreads splats. */
 void film_normalize(Film *film, uint64_t samples);
 
 /* Adds `change`, 3 values a pixel in units of the sums, to light_sums, and `samples` to light_samples. */
 void film_light_add(Film *film, const float *change, int64_t samples);
 
-/* Resets all sums and counters to zero; size and quantum stay. The next two: only the sums and counts of pixels [first, end),
- * and only what the film counts as a whole. */
+/* Resets all sums and counters to zero; size and quantum stay. The next two: only the sums and counts of pixels [first,
+ * end), and only what the film counts as a whole. */
 void film_clear(Film *film);
 void film_pixels_clear(Film *film, size_t first, size_t end);
 void film_counters_clear(Film *film);
 
-/* Saves sums and counts, or restores them into a film with the same size, crop, quantum, reconstruction and kinds of sums. */
+/* Saves sums and counts, or restores them into a film with the same size, crop, quantum, reconstruction and kinds of
+ * sums. */
 void film_archive(Archive *archive, Film *film);
 
 /* The value read from a sum: clamped to +-2^62 units, because larger sums depend on the order of additions. */
@@ -168,8 +170,8 @@ void film_resolve_pixels(const Film *film, FilmPart part, FilmScale scale, size_
 void film_resolve_depth(const Film *film, uint segments, FilmScale scale, size_t first, size_t count, float *rgb);
 
 /* rgb[3 * crop pixels] = scale * (sum / count + c light sum / (light samples / pixels)); the first term is zero for
- * pixels without samples; c is the part of the samples that are not complete. Paths from the light can reach every pixel,
- * whatever the sample count of the single pixel. */
+ * pixels without samples; c is the part of the samples that are not complete. Paths from the light can reach every
+ * pixel, whatever the sample count of the single pixel. */
 void film_resolve(const Film *film, float scale, float *rgb);
 
 #endif

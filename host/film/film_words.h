@@ -13,8 +13,8 @@ typedef struct FilmWords {
     size_t count, plain, plain_end;
 } FilmWords;
 
-/* `words` are zero, and borrowed. The film is that of the passes that `frame` describes; `count` is film_sum_words of the film
- * to which the words will be added. lookup: the scene's. */
+/* `words` are zero, and borrowed. The film is that of the passes that `frame` describes; `count` is film_sum_words of
+ * the film to which the words will be added. lookup: the scene's. */
 void film_words_begin(FilmWords *film, const FrameParams *frame, const float *lookup, ulong *words, size_t count);
 
 /* Completes the words once all splats have been added. */

@@ -30,11 +30,12 @@ void pixel_series_archive(Archive *archive, PixelSeries *series);
  * multiplied by `weight` > 0. */
 void pixel_series_add(PixelSeries *series, const float *picture, const uint32_t *weights, double weight);
 
-/* Adds an image in which pixels have the weights weights[i] + more, 0 where they were not sampled; to a series that is not
- * uniform. */
+/* Adds an image in which pixels have the weights weights[i] + more, 0 where they were not sampled; to a series that is
+ * not uniform. */
 void pixel_series_add_counted(PixelSeries *series, const float *picture, const uint32_t *weights, uint32_t more);
 
-/* pixel_series_add in parts, for a uniform series: the weight of the image, then the pixels first ... end - 1 of each part. */
+/* pixel_series_add in parts, for a uniform series: the weight of the image, then the pixels first ... end - 1 of each
+ * part. */
 void pixel_series_begin(PixelSeries *series, double weight);
 void pixel_series_add_part(PixelSeries *series, const float *picture, size_t first, size_t end);
 
@@ -78,8 +79,8 @@ typedef struct PixelWindow {
 /* The values of a window summed, means of two series. */
 double pixel_series_sum(const PixelSeries *a, const PixelSeries *b, PixelWindow window);
 
-/* How much of the variance of two series, relative to the square of each value plus `dark`, is found from their difference,
- * and how much they state. */
+/* How much of the variance of two series, relative to the square of each value plus `dark`, is found from their
+ * difference, and how much they state. */
 typedef struct PixelVariances {
     double found, stated;
 } PixelVariances;
@@ -89,10 +90,10 @@ PixelVariances pixel_series_compare(const PixelSeries *a, const PixelSeries *b, 
 /* The part of the stated variance that is found; at most 1. */
 double pixel_variances_left(PixelVariances sums);
 
-/* What is left of these variances if the samples of a series are stratified across its images: a and b are two such series
- * of the same values, independent of each other, so that the difference of their means shows their real variance. One
- * factor for all values in the window, each relative to its square plus `dark` times that of their mean; at most 1. 1 if a
- * is b, or before the second image of either. */
+/* What is left of these variances if the samples of a series are stratified across its images: a and b are two such
+ * series of the same values, independent of each other, so that the difference of their means shows their real
+ * variance. One factor for all values in the window, each relative to its square plus `dark` times that of their mean;
+ * at most 1. 1 if a is b, or before the second image of either. */
 double pixel_series_stratified(const PixelSeries *a, const PixelSeries *b, PixelWindow window, double dark);
 
 #endif

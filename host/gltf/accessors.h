@@ -32,8 +32,8 @@ size_t gltf_component_size(size_t type);
 size_t gltf_type_width(const char *type);
 size_t gltf_integer_read(const unsigned char *at, size_t size);
 
-/* Checks that an accessor is one of indices below `vertex_count`. Their number; 0 after a failure. Indices that a sparse
- * accessor replaces are not checked: Assimp drops their triangles, which gltf_meshes_read notices. */
+/* Checks that an accessor is one of indices below `vertex_count`. Their number; 0 after a failure. Indices that a
+ * sparse accessor replaces are not checked: Assimp drops their triangles, which gltf_meshes_read notices. */
 size_t gltf_indices_check(const Gltf *gltf, GltfReader *reader, int accessor, size_t vertex_count);
 
 #endif

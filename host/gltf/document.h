@@ -145,8 +145,8 @@ bool gltf_materials_read(Gltf *gltf, GltfReader *reader);
 bool gltf_nodes_read(Gltf *gltf, GltfReader *reader);
 bool gltf_primitives_read(Gltf *gltf, GltfReader *reader);
 
-/* Gives each node that poses its mesh, by a skin or by weights of morph targets, a mesh of its own in `meshes`, behind the
- * file's (poses.c). */
+/* Gives each node that poses its mesh, by a skin or by weights of morph targets, a mesh of its own in `meshes`, behind
+ * the file's (poses.c). */
 bool gltf_poses_make(Gltf *gltf, GltfReader *reader);
 
 /* From the space of a node's mesh to the world. */

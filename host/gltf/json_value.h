@@ -44,7 +44,8 @@ const json_t *gltf_array(GltfReader *reader, const GltfObject *object, const cha
 double gltf_number(GltfReader *reader, const GltfObject *object, const char *key, double fallback, double least,
                    double most);
 
-/* An array of exactly `count` numbers, which must fit floats; `out` is unchanged if absent. Returns whether it is there. */
+/* An array of exactly `count` numbers, which must fit floats; `out` is unchanged if absent. Returns whether it is
+ * there. */
 bool gltf_numbers(GltfReader *reader, const GltfObject *object, const char *key, size_t count, double *out);
 
 /* A whole number from 0 to 2^53. */

@@ -4,9 +4,9 @@
 
 #include "scene/scene.h"
 
-/* Reads `path`, glTF by its name (gltf_named) and else pbrt-v4, and calls scene_finish. `scene` must come from scene_init;
- * after an error it may only be passed to scene_destroy. The path "-" is standard input, a pbrt scene. `lenient`: as in
- * ImportOptions. Reports all errors of a pbrt scene. */
+/* Reads `path`, glTF by its name (gltf_named) and else pbrt-v4, and calls scene_finish. `scene` must come from
+ * scene_init; after an error it may only be passed to scene_destroy. The path "-" is standard input, a pbrt scene.
+ * `lenient`: as in ImportOptions. Reports all errors of a pbrt scene. */
 bool scene_file_load(const char *path, bool lenient, Scene *scene, Error *error);
 
 #endif

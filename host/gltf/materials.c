@@ -159,9 +159,9 @@ static void textures_list(GltfMaterial *material, GltfTexture *out[TEXTURES_PER_
     out[6] = &material->coat_roughness_texture;
 }
 
-/* Shapes of pbrt have one set of texture coordinates, normal maps no transform of their own, and textures none that turns.
- * So the vertices get the transform of the normal map or else of a texture that is turned; what the other textures differ
- * by must be a scale and an offset. */
+/* Shapes of pbrt have one set of texture coordinates, normal maps no transform of their own, and textures none that
+ * turns. So the vertices get the transform of the normal map or else of a texture that is turned; what the other
+ * textures differ by must be a scale and an offset. */
 static void textures_unify(GltfReader *reader, const char *name, GltfMaterial *material)
 {
     GltfTexture *textures[TEXTURES_PER_MATERIAL];

@@ -187,8 +187,8 @@ static void node_place(Gltf *gltf, GltfReader *reader, int i)
         ++gltf->meshes[node->mesh].uses;
 }
 
-/* Nodes in an order in which parents come before children: `order` gets those that are reached from nodes without a parent,
- * found without recursion, since files may nest nodes as deep as they like. Returns their number. */
+/* Nodes in an order in which parents come before children: `order` gets those that are reached from nodes without a
+ * parent, found without recursion, since files may nest nodes as deep as they like. Returns their number. */
 static size_t nodes_order(const Gltf *gltf, int *order, int *first_child, int *sibling)
 {
     size_t count = 0;

@@ -61,8 +61,8 @@ static bool inverse_binds_read(const Gltf *gltf, Skin *skin, const GltfObject *o
     return !reader->failed;
 }
 
-/* The transform of joint i: first to the joint's space, by 16 numbers column by column (NULL: identity), then by its node
- * to the world. */
+/* The transform of joint i: first to the joint's space, by 16 numbers column by column (NULL: identity), then by its
+ * node to the world. */
 static Matrix joint_matrix(const Gltf *gltf, int node, const float *inverse_bind)
 {
     Matrix bind = matrix_identity();

@@ -4,9 +4,9 @@
 
 #include "gltf/document.h"
 
-/* Moves the vertices of a primitive's mesh to where the nodes have them: in the world by the skin of the node that poses
- * it, each by the mean of its joints' transforms by its weights (linear blending). Normals keep to the surface, and
- * triangles that are mirrored keep their front. A primitive without joints follows the node. Does nothing to meshes
+/* Moves the vertices of a primitive's mesh to where the nodes have them: in the world by the skin of the node that
+ * poses it, each by the mean of its joints' transforms by its weights (linear blending). Normals keep to the surface,
+ * and triangles that are mirrored keep their front. A primitive without joints follows the node. Does nothing to meshes
  * without a skin. Fails for joints that do not exist, and for weights that are negative or not finite. */
 bool gltf_skin_apply(const Gltf *gltf, GltfReader *reader, const GltfPrimitive *primitive, PlyMesh *mesh);
 

@@ -41,8 +41,8 @@ static bool matrix_flat(const Matrix *matrix)
     return !(fabs(determinant) > 1e-37) || !isfinite(determinant);
 }
 
-/* pbrt's camera space from the world: the axes of the node, made orthogonal and of length 1 as the specification asks, with
- * z into the scene. False if the node has no axes. */
+/* pbrt's camera space from the world: the axes of the node, made orthogonal and of length 1 as the specification asks,
+ * with z into the scene. False if the node has no axes. */
 static bool camera_from_world(const Matrix *world, Matrix *out)
 {
     double x[3], y[3], z[3], eye[3], length;
@@ -232,7 +232,8 @@ static void part_print(Translation *translation, const GltfPrimitive *primitive,
     PRINT(translation, "\nAttributeEnd\n");
 }
 
-/* Prints the parts of a mesh that emit, or those that do not. Returns how many there are; with `count_only` prints none. */
+/* Prints the parts of a mesh that emit, or those that do not. Returns how many there are; with `count_only` prints
+ * none. */
 static size_t mesh_print(Translation *translation, const GltfMesh *mesh, bool emitting, bool count_only)
 {
     const Gltf *gltf = translation->gltf;
@@ -252,7 +253,8 @@ static size_t mesh_print(Translation *translation, const GltfMesh *mesh, bool em
     return count;
 }
 
-/* Objects: meshes that several nodes show. What emits is repeated instead, since pbrt ignores the light of instances. */
+/* Objects: meshes that several nodes show. What emits is repeated instead, since pbrt ignores the light of
+ * instances. */
 static bool mesh_is_object(Translation *translation, const GltfMesh *mesh)
 {
     return mesh->uses > 1 && mesh_print(translation, mesh, false, true) > 0;

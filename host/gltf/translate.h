@@ -4,8 +4,8 @@
 
 #include "gltf/document.h"
 
-/* What is being written. Names of meshes and images are PREFIX-meshes/N.ply for part N and PREFIX-textures/N.png, or .exr,
- * for derived image N. */
+/* What is being written. Names of meshes and images are PREFIX-meshes/N.ply for part N and PREFIX-textures/N.png, or
+ * .exr, for derived image N. */
 typedef struct Translation {
     Gltf *gltf;
     GltfReader *reader;

@@ -188,8 +188,8 @@ typedef struct ExrTask {
     int row;
 } ExrTask;
 
-/* Gathers the lines from y on of every channel into the lane's plane and points the encoder at them: the library's packing
- * routine only takes contiguous planes. */
+/* Gathers the lines from y on of every channel into the lane's plane and points the encoder at them: the library's
+ * packing routine only takes contiguous planes. */
 static void chunk_gather(const ExrWriter *writer, const ExrLane *lane, exr_encode_pipeline_t *encoder, int y, int lines)
 {
     const ExrPicture *picture = writer->picture;

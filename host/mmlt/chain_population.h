@@ -37,8 +37,8 @@ typedef struct PopulationLimits {
     uint depth; /* segments of a path */
 } PopulationLimits;
 
-/* Saves the chains, or restores them into a population with as many words per chain. Restoring fails unless all of them can
- * go on: with paths within the limits, finite luminances and existing cells. Any coordinates will do. */
+/* Saves the chains, or restores them into a population with as many words per chain. Restoring fails unless all of them
+ * can go on: with paths within the limits, finite luminances and existing cells. Any coordinates will do. */
 void chain_population_archive(Archive *archive, ChainPopulation *population, PopulationLimits limits);
 
 /* The samples of a pool. */

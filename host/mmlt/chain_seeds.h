@@ -21,8 +21,8 @@ typedef struct SystematicResampling {
     ChainOrder order; /* of the candidates along the comb */
 } SystematicResampling;
 
-/* seeds[resampling->count]: receives the numbers of the chosen candidates, sorted by `order`, duplicates adjacent. *sum:
- * receives the sum of the weights; if it is zero, nothing is chosen. Fails only when out of memory. */
+/* seeds[resampling->count]: receives the numbers of the chosen candidates, sorted by `order`, duplicates adjacent.
+ * *sum: receives the sum of the weights; if it is zero, nothing is chosen. Fails only when out of memory. */
 bool chain_seeds_choose(const SeedCandidates *candidates, const SystematicResampling *resampling, uint *seeds,
                         double *sum, Error *error);
 

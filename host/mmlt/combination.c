@@ -127,9 +127,9 @@ typedef struct CombinationTerms {
     double rare_most; /* largest weight of path tracing's own rare light */
 } CombinationTerms;
 
-/* The terms for these numbers of samples. The largest weight that path tracing's own rare light may have in a tile, against
- * the chains', is that by the variances of all tiles together: a tile states too small a variance as long as it has not met
- * one of the paths, which are fireflies. factor: of the chains' variance. */
+/* The terms for these numbers of samples. The largest weight that path tracing's own rare light may have in a tile,
+ * against the chains', is that by the variances of all tiles together: a tile states too small a variance as long as it
+ * has not met one of the paths, which are fireflies. factor: of the chains' variance. */
 static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
 {
     CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
@@ -140,10 +140,10 @@ static CombinationTerms terms_of(const Combination *combination, const double sa
     return terms;
 }
 
-/* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Rare light
- * is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence the
- * covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c, the variance of the
- * whole tile's mean: hence the correlation. Weights are in [0, 1] for any variances, those that are infinite or NaN
+/* Combines two estimates: chains and pool plus excess, of variance a, and path tracing plus rare, of variance b. Rare
+ * light is path tracing's own, of weight v, and the chains'. The latter and the excess come from the same chains, hence
+ * the covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c, the variance of
+ * the whole tile's mean: hence the correlation. Weights are in [0, 1] for any variances, those that are infinite or NaN
  * included. Path tracing alone shows all light. */
 static TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms)
 {
@@ -299,7 +299,8 @@ void combination_errors(const Combination *combination, const double samples[EST
     }
 }
 
-/* The best division of work for each part of path tracing. Chains and pools have one part each or more, or half a part each. */
+/* The best division of work for each part of path tracing. Chains and pools have one part each or more, or half a part
+ * each. */
 typedef struct RatesSearch {
     const Combination *combination;
     size_t every;

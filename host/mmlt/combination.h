@@ -18,13 +18,14 @@
 bool combination_init(Combination *combination, const Film *film, Error *error);
 void combination_destroy(Combination *combination);
 
-/* From now on `combination` uses the memory of `other`, which must outlive it, for what is known of tiles and for scratch.
- * For two replicas that take turns: a generation's weights are set from what is known after the one before it, and what was
- * known before that is not needed any more. Both must be for the same crop and not have learnt anything. */
+/* From now on `combination` uses the memory of `other`, which must outlive it, for what is known of tiles and for
+ * scratch. For two replicas that take turns: a generation's weights are set from what is known after the one before it,
+ * and what was known before that is not needed any more. Both must be for the same crop and not have learnt
+ * anything. */
 void combination_share(Combination *combination, const Combination *other);
 
-/* Saves what is known, or restores it into a combination for films of the same size. Any numbers will do: weights are in
- * [0, 1] whatever variances are, and light that is not finite counts as unknown. */
+/* Saves what is known, or restores it into a combination for films of the same size. Any numbers will do: weights are
+ * in [0, 1] whatever variances are, and light that is not finite counts as unknown. */
 void combination_archive(Archive *archive, Combination *combination);
 
 /* Sets the weights of a generation of `samples` of each estimator, from what is known: CombinationTile.weight and
@@ -41,11 +42,12 @@ typedef struct StepRates {
     double paths, pool;
 } StepRates;
 
-/* Saves rates that a plan has, or restores such: those that combination_rates can find, of a pool at least POOL_PER_STEP. */
+/* Saves rates that a plan has, or restores such: those that combination_rates can find, of a pool at least
+ * POOL_PER_STEP. */
 void step_rates_archive(Archive *archive, StepRates *rates);
 
-/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations are
- * compared with this division of work from then on. */
+/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations
+ * are compared with this division of work from then on. */
 StepRates combination_rates(Combination *combination);
 
 /* Square error of path tracing alone, relative to that of the best division of the same work, which

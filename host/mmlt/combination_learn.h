@@ -44,7 +44,8 @@ typedef struct CombinationTile {
     double paths_rare; /* the part of rare light that is path tracing's own */
 } CombinationTile;
 
-/* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on threads. */
+/* Partial sums of a row of tiles. They are added up in the order of rows, so that the result does not depend on
+ * threads. */
 typedef struct CombinationRow {
     double indirect_sum, direct_sum; /* of stratified path tracing ... */
     PixelVariances indirect, direct; /* ... and its variances (mmlt/combination_stratified.c) */
@@ -62,16 +63,16 @@ typedef struct Combination {
     double *ratios; /* scratch, one per tile */
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
     bool shares; /* `known` and scratch are those of another combination */
-    /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of its
-     * indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent a of the
-     * variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */
+    /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of
+     * its indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent
+     * a of the variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */
     bool one_sequence;
     float *earlier[2];
     double earlier_samples, exponents[2];
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
-    /* Variance of the chains' light in a tile over the sum of those in its patches: 1 for errors that are independent (or not
-     * known), TILE_PATCHES for errors that are alike. */
+    /* Variance of the chains' light in a tile over the sum of those in its patches: 1 for errors that are independent
+     * (or not known), TILE_PATCHES for errors that are alike. */
     double chains_correlation;
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
@@ -82,7 +83,8 @@ typedef struct Combination {
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;
 
-/* Numbers of tiles and of patches, and the tiles of a pixel and of a patch (all numbered row by row within the crop). */
+/* Numbers of tiles and of patches, and the tiles of a pixel and of a patch (all numbered row by row within the
+ * crop). */
 size_t combination_tile_count(const Combination *combination);
 size_t combination_patch_count(const Combination *combination);
 size_t combination_tile_of(const Combination *combination, size_t pixel);
@@ -108,7 +110,8 @@ RowRange combination_row_tiles(const Combination *combination, size_t row);
 /* Mean light of a tile, in luminances summed over its pixels. */
 double combination_mean_light(const Combination *combination);
 
-/* Images of an estimator in a generation, and where their luminances are summed: those that are learnt from its film. */
+/* Images of an estimator in a generation, and where their luminances are summed: those that are learnt from its
+ * film. */
 typedef struct FilmLearning {
     Combination *combination;
     const Film *film;
@@ -120,7 +123,8 @@ typedef struct FilmLearning {
     int count;
 } FilmLearning;
 
-/* Begins with the images that a film of `samples` > 0 samples of an estimator holds: layers as in mmlt/combined_image.h. */
+/* Begins with the images that a film of `samples` > 0 samples of an estimator holds: layers as in
+ * mmlt/combined_image.h. */
 void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
                                 uint64_t samples);
 

@@ -14,9 +14,9 @@ static double image_light(const Combination *combination, int s)
     return sum;
 }
 
-/* Variances of tiles do not tell how well the whole is known, since errors of chains are alike in many tiles. So the whole
- * has a series of its own. Its latest picture is what has changed the mean of the tiles since; none that is too bright for a
- * series. */
+/* Variances of tiles do not tell how well the whole is known, since errors of chains are alike in many tiles. So the
+ * whole has a series of its own. Its latest picture is what has changed the mean of the tiles since; none that is too
+ * bright for a series. */
 static void image_learn(Combination *combination)
 {
     PixelSeries *whole = &combination->rare_whole;

@@ -8,8 +8,8 @@
  * combination->rare_missed. The tiles' light must be known (mmlt/combination_variances.c). */
 void combination_rare_update(Combination *combination);
 
-/* Whether path tracing's own rare light must not be trusted, whatever variance it states: that of light which is never or
- * hardly ever found is zero. */
+/* Whether path tracing's own rare light must not be trusted, whatever variance it states: that of light which is never
+ * or hardly ever found is zero. */
 bool combination_rare_hidden(const Combination *combination);
 
 #endif

@@ -59,8 +59,9 @@ static void row_earlier(void *context, size_t row)
 /* Largest exponent of the variance of n samples, n^-exponent, that is told from others. */
 #define EXPONENT_MOST 3.0
 
-/* The exponent a of the variance V n^-a of a sequence's first n samples, from that of the difference between the means of its
- * first `few` and `many`, which for exchangeable parts is V few^-a - V many^-a, in units of what it is for a = 1. */
+/* The exponent a of the variance V n^-a of a sequence's first n samples, from that of the difference between the means
+ * of its first `few` and `many`, which for exchangeable parts is V few^-a - V many^-a, in units of what it is for a =
+ * 1. */
 static double exponent_of(double part, double few, double many)
 {
     double low = 1.0, high = EXPONENT_MOST;

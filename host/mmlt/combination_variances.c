@@ -195,7 +195,8 @@ static void spreads_share(Combination *combination, int s, double *ratios)
     }
 }
 
-/* Samples of path tracing are stratified across generations (mmlt/paths_estimator.h): part of their variance is left. */
+/* Samples of path tracing are stratified across generations (mmlt/paths_estimator.h): part of their variance is
+ * left. */
 static void stratification_apply(Combination *combination, const Combination *other)
 {
     StratifiedParts left = combination_stratified(combination, other);
@@ -232,9 +233,9 @@ static double chains_ratio(const Combination *combination, int s)
     return shape > 0.0 ? spread / shape : 0.0;
 }
 
-/* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Excess and rare
- * light are few bright paths: where chains rarely come, most tiles have not met them and state too small a variance, and the
- * median of all is as small. */
+/* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Excess and
+ * rare light are few bright paths: where chains rarely come, most tiles have not met them and state too small a
+ * variance, and the median of all is as small. */
 static double mean_weight(const Combination *combination, int s, double known)
 {
     if (s != SERIES_EXCESS && s != SERIES_RARE)

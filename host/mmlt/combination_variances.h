@@ -4,7 +4,8 @@
 
 #include "mmlt/combination_learn.h"
 
-/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is none. */
+/* Recomputes combination->known from the series. other: of the other replica, or `combination` itself if there is
+ * none. */
 void combination_variances_update(Combination *combination, const Combination *other);
 
 /* What a tile's variance is relative to. mean_light: combination_mean_light. */

@@ -89,8 +89,8 @@ typedef struct LayerWeights {
     double light, own, rare;
 } LayerWeights;
 
-/* Path tracing shows the part paths_rare of rare light itself, which is in its light; chains add the rest. Pools and chains,
- * which have the weight that path tracing leaves, share the excess. */
+/* Path tracing shows the part paths_rare of rare light itself, which is in its light; chains add the rest. Pools and
+ * chains, which have the weight that path tracing leaves, share the excess. */
 static LayerWeights layer_weights(const CombinationTile *tile, EstimatorKind kind)
 {
     double paths = tile->weight[ESTIMATOR_PATHS], by_chains = paths * (1.0 - tile->paths_rare);

@@ -3,15 +3,15 @@
  * film and this.
  *
  * Layers of the film: light_sums hold paths that all estimators make, up to the estimator's clamping threshold. Of path
- * tracing, `sums` hold direct light, and rare_sums what of the light is rare. Of chains, `sums` hold the excess and rare_sums
- * the rare light. */
+ * tracing, `sums` hold direct light, and rare_sums what of the light is rare. Of chains, `sums` hold the excess and
+ * rare_sums the rare light. */
 #ifndef TWINLIGHT_MMLT_COMBINED_IMAGE_H
 #define TWINLIGHT_MMLT_COMBINED_IMAGE_H
 
 #include "mmlt/combination.h"
 
-/* What changes in the film's light sums, 3 per pixel in units of the film's, and in their number of samples if path tracing alone is
- * shown in some generations. */
+/* What changes in the film's light sums, 3 per pixel in units of the film's, and in their number of samples if path
+ * tracing alone is shown in some generations. */
 typedef struct PathsChange {
     float *values; /* NULL: it is not known */
     int64_t samples;
@@ -40,12 +40,13 @@ void paths_change_forget(PathsChange *change);
 /* Saves what changes, or restores it. */
 void paths_change_archive(Archive *archive, PathsChange *change, size_t values);
 
-/* An empty image of a generation in which the estimators have `samples` (0: none), by the weights that the teacher now has
- * for them. */
+/* An empty image of a generation in which the estimators have `samples` (0: none), by the weights that the teacher now
+ * has for them. */
 void combined_image_begin(CombinedImage *image, Combination *learner, Combination *teacher,
                           const double samples[ESTIMATOR_COUNT]);
 
-/* Adds what an estimator has left in the film, and learns from it, unless it has no samples. take: empties the film, too. */
+/* Adds what an estimator has left in the film, and learns from it, unless it has no samples. take: empties the film,
+ * too. */
 void combined_image_add(CombinedImage *image, EstimatorKind kind, Film *film);
 void combined_image_take(CombinedImage *image, EstimatorKind kind, Film *film);
 

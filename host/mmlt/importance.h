@@ -33,8 +33,8 @@ void importance_learn(const Combination *combination, float importance[IMPORTANC
 bool importance_visits(const Combination *combination, const double samples[ESTIMATOR_COUNT],
                        const double visited[IMPORTANCE_CELLS], uint visits[IMPORTANCE_CELLS + 1], Error *error);
 
-/* Saves the visits of a film of this size, or restores such as importance_visits computes: each pixel of a cell has the same
- * number of 1 ... VISITS_MOST. */
+/* Saves the visits of a film of this size, or restores such as importance_visits computes: each pixel of a cell has the
+ * same number of 1 ... VISITS_MOST. */
 void importance_visits_archive(Archive *archive, uint visits[IMPORTANCE_CELLS + 1], const int size[2]);
 
 /* The density ratio of a cell: how many times less often pools with these visits sample it than if they visited all

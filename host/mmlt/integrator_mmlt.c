@@ -36,8 +36,8 @@ static void weights_tell(const Mmlt *mmlt)
         mmlt->run->chains.weights[s] = mmlt->combinations[0].weight[s];
 }
 
-/* Looks at the error after as many generations of one replica as of the other, and enough for both to know variances. The next
- * two are no longer than what reaches the goal. */
+/* Looks at the error after as many generations of one replica as of the other, and enough for both to know variances.
+ * The next two are no longer than what reaches the goal. */
 static bool look_if_due(Mmlt *mmlt, Error *error)
 {
     RenderRun *run = mmlt->run;

@@ -178,8 +178,8 @@ static bool pool_due(const Mmlt *mmlt)
     return mmlt->scheme->renews || mmlt->generation.index == 0;
 }
 
-/* Tells how long the generation still takes after an estimator has run: by what was expected in the first half of its work,
- * then by the time that the work so far took. */
+/* Tells how long the generation still takes after an estimator has run: by what was expected in the first half of its
+ * work, then by the time that the work so far took. */
 static void estimator_tell(Mmlt *mmlt, EstimatorKind kind)
 {
     double taken = timing_now() - mmlt->begun, left = mmlt->expected - taken;
@@ -191,8 +191,8 @@ static void estimator_tell(Mmlt *mmlt, EstimatorKind kind)
     render_run_tell(mmlt->run);
 }
 
-/* Takes what an estimator has left in the film, which is then empty, into the generation's image. Without a combination all
- * estimators stay in the film. */
+/* Takes what an estimator has left in the film, which is then empty, into the generation's image. Without a combination
+ * all estimators stay in the film. */
 static void estimator_take(Mmlt *mmlt, EstimatorKind kind)
 {
     if (!mmlt->options.chains_only)
@@ -220,8 +220,8 @@ static bool chains_follow(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return true;
 }
 
-/* The first generation begins with path tracing, after the pilot that gives its clamping threshold, so that there is soon
- * something to save, or to show after a stop: path tracing alone is in the image until the generation ends. */
+/* The first generation begins with path tracing, after the pilot that gives its clamping threshold, so that there is
+ * soon something to save, or to show after a stop: path tracing alone is in the image until the generation ends. */
 static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     Film *film = &mmlt->film, *image = mmlt->run->film;
@@ -244,8 +244,8 @@ static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return true;
 }
 
-/* Runs all passes of a generation. Later generations end with path tracing, which needs the target importance that is renewed
- * before the pool. */
+/* Runs all passes of a generation. Later generations end with path tracing, which needs the target importance that is
+ * renewed before the pool. */
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 {
     bool first = mmlt->generation.index == 0;
@@ -258,8 +258,8 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
-/* Sets the samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its path
- * tracing. */
+/* Sets the samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its
+ * path tracing. */
 static void generation_samples(Mmlt *mmlt, uint count)
 {
     bool chains = chains_due(mmlt);
@@ -317,9 +317,9 @@ static bool films_combine(Mmlt *mmlt)
     return true;
 }
 
-/* Where the generation tells that light is easy, path tracing alone is shown in the first generations of the other replica,
- * whose weights were not those of known variances. What is shown must not be chosen by its own errors: light that it has missed
- * would make it look good. learnt: otherwise what is known comes from the other replica itself. */
+/* Where the generation tells that light is easy, path tracing alone is shown in the first generations of the other
+ * replica, whose weights were not those of known variances. What is shown must not be chosen by its own errors: light
+ * that it has missed would make it look good. learnt: otherwise what is known comes from the other replica itself. */
 static void first_paths_show(Mmlt *mmlt, bool learnt)
 {
     PathsChange *change = &mmlt->changes[mmlt->generation.other];

@@ -26,8 +26,8 @@ typedef struct Mmlt {
     Plan plan;
     Generation generation; /* under way */
     double seconds; /* that the latest generation took */
-    /* Of the generation under way: samples of each estimator, when it began (timing_now), the seconds that it was then expected
-     * to take (0: not known), and its work so far (estimators_work). */
+    /* Of the generation under way: samples of each estimator, when it began (timing_now), the seconds that it was then
+     * expected to take (0: not known), and its work so far (estimators_work). */
     double samples[ESTIMATOR_COUNT], begun, expected, work;
     bool whole; /* the latest generation was not stopped before its end */
     ArchiveMemory
@@ -55,8 +55,8 @@ bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
  * tracing samples are kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
-/* The seconds that the next generation takes with any number of chains, as far as the latest one tells: path tracing in the
- * first ones. */
+/* The seconds that the next generation takes with any number of chains, as far as the latest one tells: path tracing in
+ * the first ones. */
 double mmlt_least_seconds(const Mmlt *mmlt);
 
 #endif

@@ -5,8 +5,8 @@
 /* More than any rendering has. */
 #define GENERATIONS_MOST 0x7fffffffu
 
-/* Saves or restores what the next generation depends on. Numbers that later ones are divided by or read memory by must lie
- * where they can; others, such as seconds, positions in orders of pixels and statistics, may be any. */
+/* Saves or restores what the next generation depends on. Numbers that later ones are divided by or read memory by must
+ * lie where they can; others, such as seconds, positions in orders of pixels and statistics, may be any. */
 static void mmlt_archive(Archive *archive, Mmlt *mmlt)
 {
     const int *crop = mmlt->film.crop, size[2] = {crop[2] - crop[0], crop[3] - crop[1]};

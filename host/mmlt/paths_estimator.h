@@ -21,8 +21,9 @@ typedef struct PathsEstimator {
     double seconds; /* that these took */
 } PathsEstimator;
 
-/* Makes the lists. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only: of
- * paths that chains do not make. completes: `complete`, too. guide: for passes. Call paths_estimator_destroy even on failure. */
+/* Makes the lists. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only:
+ * of paths that chains do not make. completes: `complete`, too. guide: for passes. Call paths_estimator_destroy even on
+ * failure. */
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
                           const Guide *guide, Error *error);
 void paths_estimator_destroy(PathsEstimator *paths);
@@ -30,8 +31,8 @@ void paths_estimator_destroy(PathsEstimator *paths);
 /* Saves what the next generation needs, or restores it. */
 void paths_estimator_archive(Archive *archive, PathsEstimator *paths);
 
-/* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there have
- * been about as many as wanted. Generation g < PATHS_FORCED ends with at least g + 1. */
+/* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there
+ * have been about as many as wanted. Generation g < PATHS_FORCED ends with at least g + 1. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */
@@ -43,11 +44,12 @@ static inline double paths_estimator_owed(const PathsEstimator *paths)
     return paths->wanted - (double)paths->done;
 }
 
-/* The number of the generation's first sample of a pixel: its place in a stratified sequence, or in the second, which begins at
- * 2^30. */
+/* The number of the generation's first sample of a pixel: its place in a stratified sequence, or in the second, which
+ * begins at 2^30. */
 uint paths_estimator_number(const PathsEstimator *paths, const Generation *generation);
 
-/* Runs these. complete: by `complete`, and the film says that its samples are. *whole: set to false if stopped before the end. */
+/* Runs these. complete: by `complete`, and the film says that its samples are. *whole: set to false if stopped before
+ * the end. */
 bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bool complete, bool *whole, Error *error);
 
 /* Counts the generation's samples. */

@@ -30,8 +30,8 @@ static double chains_left(const Plan *plan)
     return (double)(plan->total - plan->done) / chain_work(plan);
 }
 
-/* The same for the generations from `index` on, of which the first ones have path tracing at any rate: without it, if what is
- * left of it is no whole sample of every pixel. */
+/* The same for the generations from `index` on, of which the first ones have path tracing at any rate: without it, if
+ * what is left of it is no whole sample of every pixel. */
 static double chains_left_from(const Plan *plan, uint index)
 {
     double chains = chains_left(plan);

@@ -34,8 +34,8 @@ void plan_rates_set(Plan *plan, StepRates rates);
 /* Saves what was learnt and done, or restores it: not the limit, which may be another one. */
 void plan_archive(Archive *archive, Plan *plan);
 
-/* Adopts the best rates by what is known after generation `index`; no change until variances are known, nor between the two
- * generations of a pair. */
+/* Adopts the best rates by what is known after generation `index`; no change until variances are known, nor between the
+ * two generations of a pair. */
 void plan_learn(Plan *plan, uint index, Combination *combination);
 
 /* Counts a generation's work. owed: Plan.owed after it. */
@@ -54,16 +54,16 @@ void plan_shorten(Plan *plan, double work);
 double plan_seconds(const Plan *plan, double seconds);
 
 /* Fits the next generation into what is left of the time, unless that is so little that none should follow (false).
- * With the published scheme, whose generations have one size, it is only whether there is time left. seconds: of the latest
- * generation, which tells what work takes. least: what the next one takes with any number of chains. limit: all of the
- * time. */
+ * With the published scheme, whose generations have one size, it is only whether there is time left. seconds: of the
+ * latest generation, which tells what work takes. least: what the next one takes with any number of chains. limit: all
+ * of the time. */
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit);
 
 /* Chains of the next generation; 0: it is path tracing alone. */
 uint plan_chains(const Plan *plan);
 
-/* Samples of a pool for `chains` chains: --mlt=pool, else by the rates, rounded to whole samples per pixel if that gives at
- * least one. */
+/* Samples of a pool for `chains` chains: --mlt=pool, else by the rates, rounded to whole samples per pixel if that
+ * gives at least one. */
 uint plan_pool_samples(const Plan *plan, uint chains);
 
 /* Samples of path tracing per pixel for `chains` chains: by the rates, but no more than the work that is left

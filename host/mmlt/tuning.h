@@ -38,9 +38,9 @@
  * glossy surfaces; docs/TUNING.md. */
 #define SHIFTS 0.75f
 
-/* Most photons, up to PHOTONS_MOST_ALLOWED, if so many predict better than fewer (render/photon_map.c): more cost memory
- * (60 bytes each) and time before the first sample, fewer predict directions less well. On two cores as many as a second
- * brings take .1 to .2 s. */
+/* Most photons, up to PHOTONS_MOST_ALLOWED, if so many predict better than fewer (render/photon_map.c): more cost
+ * memory (60 bytes each) and time before the first sample, fewer predict directions less well. On two cores as many as
+ * a second brings take .1 to .2 s. */
 #define MMLT_PHOTONS_MIN 32768u
 #define MMLT_PHOTONS_PER_SECOND 32768.0
 #define MMLT_PHOTONS_PER_SAMPLE 0.0625
@@ -60,7 +60,8 @@
 /* ... or this much if that allows a path tracing sample of every pixel. */
 #define WHOLE_SAMPLE_PART 0.25
 
-/* The last generation is fitted into the time that is left, if that is more than this fraction of what it would take. */
+/* The last generation is fitted into the time that is left, if that is more than this fraction of what it would
+ * take. */
 #define LAST_PART 0.25
 
 /* A generation that cannot be made shorter may end later than the limit of time by this fraction of it. */
@@ -91,19 +92,20 @@
  * bright path is found. */
 #define PRIOR_GENERATIONS 2.0
 
-/* About how many steps of a chain stay near one tile, and how many such visits tell as much of the variance of a tile's excess
- * and rare light as all tiles together do: with fewer, most tiles have not met the bright paths; docs/TUNING.md. */
+/* About how many steps of a chain stay near one tile, and how many such visits tell as much of the variance of a tile's
+ * excess and rare light as all tiles together do: with fewer, most tiles have not met the bright paths;
+ * docs/TUNING.md. */
 #define VISIT_STEPS 64.0
 #define VISITS_KNOWN 1.0
 
-/* The chains' variance of rare light counts this many times against path tracing's: it is learnt from few visits, and two
- * replicas' estimates of it differ by a factor of two or three. More shows fireflies of path tracing, less shows places where
- * a chain has stayed; docs/TUNING.md. */
+/* The chains' variance of rare light counts this many times against path tracing's: it is learnt from few visits, and
+ * two replicas' estimates of it differ by a factor of two or three. More shows fireflies of path tracing, less shows
+ * places where a chain has stayed; docs/TUNING.md. */
 #define RARE_DOUBT 2.0
 
-/* Path tracing finds too little of the rare light if the chains' in the whole image exceeds its own by this many of the chains'
- * standard errors, and by this part of all light: chains of a few generations state errors that are too small. Its own error
- * does not count: as long as it has found nothing, that is nothing; docs/TUNING.md. */
+/* Path tracing finds too little of the rare light if the chains' in the whole image exceeds its own by this many of the
+ * chains' standard errors, and by this part of all light: chains of a few generations state errors that are too small.
+ * Its own error does not count: as long as it has found nothing, that is nothing; docs/TUNING.md. */
 #define RARE_MISSED_DEVIATIONS 3.0
 #define RARE_MISSED_PART 0.01
 
@@ -127,7 +129,8 @@
  * docs/TUNING.md. */
 #define FIRST_PATHS 0.25
 
-/* Weight of a generation's picture per work: until variances are known, and at most; 1 if its work is divided as is best. */
+/* Weight of a generation's picture per work: until variances are known, and at most; 1 if its work is divided as is
+ * best. */
 #define FIRST_WORTH 0.25
 #define WORTH_MOST 2.0
 
@@ -138,9 +141,9 @@
 /* Its work then, in units of that of the generations between, which look for what it does not find. */
 #define ALONE_WORK 4.0
 
-/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if so many generations or
- * fewer tell that light is easy. Its difference from their image is kept until then, which takes 24 bytes a pixel; pictures of more
- * pixels than this do without; docs/TUNING.md. */
+/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if so many
+ * generations or fewer tell that light is easy. Its difference from their image is kept until then, which takes 24
+ * bytes a pixel; pictures of more pixels than this do without; docs/TUNING.md. */
 #define PATHS_REPLACED 3u
 #define PATHS_KEPT 8u
 #define PATHS_KEPT_PIXELS ((size_t)1 << 20)

@@ -11,8 +11,8 @@ typedef struct CoatMedium {
     SourcePlace place; /* of the albedo */
 } CoatMedium;
 
-/* Reads thickness, albedo, g and the parameters of pbrt's random walk. A texture as thickness counts as its mean, with a
- * warning. scatters: whether an albedo is supported. On errors the list has failed. */
+/* Reads thickness, albedo, g and the parameters of pbrt's random walk. A texture as thickness counts as its mean, with
+ * a warning. scatters: whether an albedo is supported. On errors the list has failed. */
 void coat_medium_read(PbrtImport *im, ParamList *list, bool scatters, CoatMedium *medium);
 
 /* Replaces a coat over a conductor by a mix if its medium scatters, with a warning (scene/coat_medium.h). `coat` is

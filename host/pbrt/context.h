@@ -73,7 +73,8 @@ typedef struct ImportTexture {
     uint program; /* index in the scene once used, else NONE */
 } ImportTexture;
 
-/* A material that is used before it is defined, and one whose definition names what is not defined yet (pbrt/late.h). */
+/* A material that is used before it is defined, and one whose definition names what is not defined yet
+ * (pbrt/late.h). */
 typedef struct LateUse {
     const char *name;
     SourcePlace place; /* of its first use */

@@ -6,8 +6,8 @@
 #include "pbrt/needs.h"
 #include "pbrt/ply.h"
 
-/* Meshes and images that a text refers to by name and that are in memory. A function fills its last argument but one, which
- * the importer destroys, or fails. */
+/* Meshes and images that a text refers to by name and that are in memory. A function fills its last argument but one,
+ * which the importer destroys, or fails. */
 typedef struct ImportMemory {
     bool (*mesh)(void *owner, const char *name, PlyMesh *mesh, Error *error);
     bool (*image)(void *owner, const char *name, Image *image, Error *error);

@@ -15,8 +15,8 @@ uint late_material_define(PbrtImport *im, const char *name);
 /* Whether the list of a material of that kind names a texture or material that is not defined yet. */
 bool late_material_waits(const PbrtImport *im, const ParamList *list, const char *kind);
 
-/* Leaves reading the current directive, a material of that kind, to late_materials_finish. index: of the material, which
- * is blank until then. */
+/* Leaves reading the current directive, a material of that kind, to late_materials_finish. index: of the material,
+ * which is blank until then. */
 bool late_material_defer(PbrtImport *im, const ParamList *list, const char *kind, SourcePlace place, uint index);
 
 /* Called at the end of the scene: reads what was deferred. Fails if names were never defined, or if mixes contain each

@@ -1,5 +1,5 @@
-/* Warnings where a light or the camera is declared in another medium (MediumInterface) than the surfaces around it leave
- * there. Paths from the camera find the latter, paths that start at the light are in the former, so integrators
+/* Warnings where a light or the camera is declared in another medium (MediumInterface) than the surfaces around it
+ * leave there. Paths from the camera find the latter, paths that start at the light are in the former, so integrators
  * disagree. */
 #ifndef TWINLIGHT_PBRT_MEDIA_PLACES_H
 #define TWINLIGHT_PBRT_MEDIA_PLACES_H

@@ -1,5 +1,5 @@
-/* The named media of pbrt-v4: measured coefficients per millimetre, red, green and blue. Up to "Wholemilk", scattering is
- * the reduced coefficient measured by Jensen, Marschner, Levoy and Hanrahan, "A practical model for subsurface light
+/* The named media of pbrt-v4: measured coefficients per millimetre, red, green and blue. Up to "Wholemilk", scattering
+ * is the reduced coefficient measured by Jensen, Marschner, Levoy and Hanrahan, "A practical model for subsurface light
  * transport", 2001; the others are from Narasimhan, Gupta, Donner, Ramamoorthi, Nayar and Jensen, "Acquiring scattering
  * properties of participating media by dilution", 2006. */
 #ifndef TWINLIGHT_PBRT_MEDIA_PRESETS_H

@@ -16,10 +16,10 @@ typedef struct PlyMesh {
 } PlyMesh;
 
 /* Reads element vertex (x y z, nx ny nz, u v | s t | texture_u texture_v | texture_s texture_t) and element face
- * (vertex_indices or vertex_index); everything else is skipped. Faces of more than 4 vertices are divided into triangles
- * (pbrt/polygon.h). Fails, naming the path at `place` (the parameter in the
- * scene), if the file cannot be read, is damaged or truncated, or an index is out of range. Memory is bounded by a
- * multiple of the (decompressed) file's size. */
+ * (vertex_indices or vertex_index); everything else is skipped. Faces of more than 4 vertices are divided into
+ * triangles (pbrt/polygon.h). Fails, naming the path at `place` (the parameter in the scene), if the file cannot be
+ * read, is damaged or truncated, or an index is out of range. Memory is bounded by a multiple of the (decompressed)
+ * file's size. */
 bool ply_read(const char *path, SourcePlace place, PlyMesh *mesh, Error *error);
 
 /* The same from memory, not compressed; `path` is for messages. */

@@ -27,8 +27,8 @@ bool state_attribute(PbrtImport *im, const char *target, SourcePlace target_plac
 /* AreaLightSource "kind" and the parameters in im->params. */
 bool state_area_light(PbrtImport *im, const char *kind);
 
-/* The current transform for use without motion blur: the one at the start. Motion is reported as unsupported. Fails if it
- * is projective. */
+/* The current transform for use without motion blur: the one at the start. Motion is reported as unsupported. Fails if
+ * it is projective. */
 bool import_ctm(PbrtImport *im, SourcePlace place, Matrix *ctm);
 
 /* Converts a transform to the file's world space into one to the scene's world space, which is offset by im->offset. */

@@ -17,12 +17,12 @@ typedef struct SubdividedMesh {
 /* Triangles after subdivision: about 1.5 GiB. */
 #define SUBDIVIDE_TRIANGLES_MAX ((size_t)1 << 24)
 
-/* Divides every triangle into four, `levels` times (Loop 1987, "Smooth Subdivision Surfaces Based on Triangles"), moves the
- * vertices to where they would be in the limit, and derives normals from the limit's tangents; boundaries become curves
- * of their own. The weights are those of pbrt. positions: 3 floats each of vertex_count; indices: 3 each of
- * triangle_count, below vertex_count. Vertices without a triangle are kept. Fails if an edge has more than two triangles,
- * or two that go along it in the same direction, if there would be more than SUBDIVIDE_TRIANGLES_MAX triangles, or when
- * out of memory; *out is then empty. */
+/* Divides every triangle into four, `levels` times (Loop 1987, "Smooth Subdivision Surfaces Based on Triangles"), moves
+ * the vertices to where they would be in the limit, and derives normals from the limit's tangents; boundaries become
+ * curves of their own. The weights are those of pbrt. positions: 3 floats each of vertex_count; indices: 3 each of
+ * triangle_count, below vertex_count. Vertices without a triangle are kept. Fails if an edge has more than two
+ * triangles, or two that go along it in the same direction, if there would be more than SUBDIVIDE_TRIANGLES_MAX
+ * triangles, or when out of memory; *out is then empty. */
 bool subdivide_loop(const float *positions, size_t vertex_count, const uint *indices, size_t triangle_count,
                     unsigned levels, SubdividedMesh *out, Error *error);
 

@@ -19,8 +19,8 @@ bool value_float_param(PbrtImport *im, ParamList *list, const char *name, FloatP
 /* The texture named by a parameter of type texture, as an index into im->textures. NONE if the list has failed. */
 uint value_texture_index(PbrtImport *im, ParamList *list, const Param *param, bool spectrum);
 
-/* The mean of a float texture's program over the unit square of (u, v), which is in the plane z = 0; `unread` if only the
- * scene's needs are wanted, for which images are not read. */
+/* The mean of a float texture's program over the unit square of (u, v), which is in the plane z = 0; `unread` if only
+ * the scene's needs are wanted, for which images are not read. */
 float value_texture_mean(const PbrtImport *im, uint program, float unread);
 
 /* An index of refraction: a float, or a spectrum, which is averaged over RGB. */

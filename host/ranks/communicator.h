@@ -1,5 +1,5 @@
-/* Messages between ranks, over MPI. Rank 0 and the others wait without keeping a processor busy. A failure of MPI ends all
- * ranks, with MPI's own message. */
+/* Messages between ranks, over MPI. Rank 0 and the others wait without keeping a processor busy. A failure of MPI ends
+ * all ranks, with MPI's own message. */
 #ifndef TWINLIGHT_RANKS_COMMUNICATOR_H
 #define TWINLIGHT_RANKS_COMMUNICATOR_H
 
@@ -20,8 +20,8 @@ void communicator_end(void);
 int communicator_count(void);
 int communicator_number(void);
 
-/* Number of ranks on this machine that are bound to the same processors as this one, itself included. Every rank must call
- * it. */
+/* Number of ranks on this machine that are bound to the same processors as this one, itself included. Every rank must
+ * call it. */
 int communicator_neighbours(void);
 
 /* Name of this machine. */

@@ -21,7 +21,8 @@ typedef struct RankCommand {
     bool stopped; /* COMMAND_FINISH: a TAG_STOP message was sent */
 } RankCommand;
 
-/* A pass, to all ranks. What it refers to follows in this order, each unless the ranks have it: steps, guide, photons. */
+/* A pass, to all ranks. What it refers to follows in this order, each unless the ranks have it: steps, guide,
+ * photons. */
 typedef struct PassOrder {
     FrameParams frame;
     uint words_per_item[BUFFER_COUNT];

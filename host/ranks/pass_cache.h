@@ -1,4 +1,5 @@
-/* Sends the description of a pass to all ranks, without what they have: rank 0 knows what it has sent, the others keep it. */
+/* Sends the description of a pass to all ranks, without what they have: rank 0 knows what it has sent, the others keep
+ * it. */
 #ifndef TWINLIGHT_RANKS_PASS_CACHE_H
 #define TWINLIGHT_RANKS_PASS_CACHE_H
 

@@ -59,7 +59,8 @@ static void pass_send(RanksBackend *ranks, const FrameParams *frame, const StepL
     }
 }
 
-/* Waits for this rank's slice and the reports of the others, and tells them of a stop. Returns whether there was one. */
+/* Waits for this rank's slice and the reports of the others, and tells them of a stop. Returns whether there was
+ * one. */
 static bool pass_wait(RanksBackend *ranks, Slice *slice, const atomic_int *stop)
 {
     static const char NOTHING = 0;

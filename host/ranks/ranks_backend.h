@@ -5,8 +5,8 @@
 #include "backend/group.h"
 #include "ranks/messages.h"
 
-/* Takes ownership of `local`, the open backend of rank 0; it is closed on failure (NULL), too. reports: those of ranks 1 ... on
- * their opening, copied; reports[0] is not used. tables: the scene's, borrowed. To be used through
+/* Takes ownership of `local`, the open backend of rank 0; it is closed on failure (NULL), too. reports: those of ranks
+ * 1 ... on their opening, copied; reports[0] is not used. tables: the scene's, borrowed. To be used through
  * ranks_backend_interface(). */
 Backend *ranks_backend_create(BackendMember local, const RankReport *reports, const uint *tables, Error *error);
 

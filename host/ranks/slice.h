@@ -28,8 +28,8 @@ typedef struct Slice {
     bool threaded, done;
 } Slice;
 
-/* Starts it; all members above the outcome must be set, and the slice must stay where it is until slice_join. Without items, or
- * if no thread can be started, it is done on return. */
+/* Starts it; all members above the outcome must be set, and the slice must stay where it is until slice_join. Without
+ * items, or if no thread can be started, it is done on return. */
 void slice_start(Slice *slice);
 
 /* Waits until it is done, at most `seconds`. Returns whether it is. */

@@ -104,8 +104,8 @@ static void run_archive(RenderRun *run, CheckpointState state, Archive *archive)
     checkpoint_image_archive(archive, run->film, run->options->layers, state);
 }
 
-/* Moves the new file to its name, and the old one to that of the previous one. A file that is not known to be whole must not
- * replace the previous one, which may be what was resumed. */
+/* Moves the new file to its name, and the old one to that of the previous one. A file that is not known to be whole
+ * must not replace the previous one, which may be what was resumed. */
 static bool files_rename(Checkpoint *checkpoint, ArchiveWriter *writer, Error *error)
 {
     char previous[NAME_MAX_BYTES];
@@ -176,8 +176,8 @@ bool checkpoint_end(RenderRun *run, CheckpointState state, Error *error)
 
 /* ---- resuming ---------------------------------------------------------------------------------------------------- */
 
-/* Opens a file that is whole and of this rendering. what: its name for messages. *damaged: whether it is not whole, so that
- * another may do. */
+/* Opens a file that is whole and of this rendering. what: its name for messages. *damaged: whether it is not whole, so
+ * that another may do. */
 static bool file_open(Checkpoint *checkpoint, const char *path, const char *what, bool *damaged, Error *error)
 {
     ArchiveReader *reader = &checkpoint->reader;

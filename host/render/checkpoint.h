@@ -1,9 +1,9 @@
 /* Checkpoints: the state of a rendering between two passes, from which another process goes on to the same image.
  *
  * A file holds what the next pass depends on and does not follow from scene, options and seed: the film's sums, the
- * layers, the integrator's state and what has been counted. It names what it is of (render/identity.h). The last two are
- * kept, FILE and FILE.previous: a new one is written whole under a temporary name before these are renamed, so that there
- * is a whole one at any moment. */
+ * layers, the integrator's state and what has been counted. It names what it is of (render/identity.h). The last two
+ * are kept, FILE and FILE.previous: a new one is written whole under a temporary name before these are renamed, so that
+ * there is a whole one at any moment. */
 #ifndef TWINLIGHT_RENDER_CHECKPOINT_H
 #define TWINLIGHT_RENDER_CHECKPOINT_H
 
@@ -30,8 +30,8 @@ typedef struct CheckpointState {
     void *context;
 } CheckpointState;
 
-/* Whether the files named are there as they must be, before the scene is loaded: what is resumed, unless the rendering may
- * start anew; and what is written to must not be there, unless it is what is resumed. */
+/* Whether the files named are there as they must be, before the scene is loaded: what is resumed, unless the rendering
+ * may start anew; and what is written to must not be there, unless it is what is resumed. */
 bool checkpoint_files_check(const CheckpointOptions *options, Error *error);
 
 /* Sets run->checkpoint if options say so, opens the file to resume, checks that it is of this rendering, and restores
@@ -41,11 +41,12 @@ bool checkpoint_begin(Checkpoint *checkpoint, RenderRun *run, const Integrator *
                       Error *error);
 void checkpoint_destroy(Checkpoint *checkpoint);
 
-/* Restores film, layers and state if a checkpoint is resumed. All of them must have their sizes. On failure run->done is 0:
- * the film holds no image. */
+/* Restores film, layers and state if a checkpoint is resumed. All of them must have their sizes. On failure run->done
+ * is 0: the film holds no image. */
 bool checkpoint_restore(RenderRun *run, CheckpointState state, Error *error);
 
-/* The parts of a file: what it begins with (*other: archive_head), and what is at its end. layers: NULL if there are none. */
+/* The parts of a file: what it begins with (*other: archive_head), and what is at its end. layers: NULL if there are
+ * none. */
 void checkpoint_head_archive(Archive *archive, Identity *identity, bool *other);
 void checkpoint_image_archive(Archive *archive, Film *film, struct RenderLayers *layers, CheckpointState state);
 

@@ -12,7 +12,8 @@
 /* The parameters of `items` paths over the whole film, with all strategies of the integrator. */
 FrameParams pilot_frame(const RenderRun *run, const Integrator *integrator, uint items);
 
-/* Renders the paths of a pilot_frame, by run->photons if the frame has any. Fails if the backend does or out of memory. */
+/* Renders the paths of a pilot_frame, by run->photons if the frame has any. Fails if the backend does or out of
+ * memory. */
 bool pilot_run(const RenderRun *run, const Integrator *integrator, FrameParams *frame, const SplatSink *sink,
                Error *error);
 

@@ -131,7 +131,8 @@ static void tile_add(Estimate *estimate, size_t x, size_t rows)
 
 /* ---- the film ---------------------------------------------------------------------------------------------------- */
 
-/* The film's worst pixels, which the error leaves out: those above a limit, and as many of those at it as are needed. */
+/* The film's worst pixels, which the error leaves out: those above a limit, and as many of those at it as are
+ * needed. */
 typedef struct Trimmed {
     double limit;
     size_t at_limit;
@@ -158,8 +159,8 @@ static double tile_sum(const Estimate *estimate, size_t tile, Trimmed *trimmed)
     return sum;
 }
 
-/* Root of the mean. Its standard error is, relative to it, half of that of the sum over the tiles, whose variance is estimated
- * from the differences between neighbours: tiles have different errors, but those of neighbours are alike. */
+/* Root of the mean. Its standard error is, relative to it, half of that of the sum over the tiles, whose variance is
+ * estimated from the differences between neighbours: tiles have different errors, but those of neighbours are alike. */
 static HalvesError mean_error(const Estimate *estimate)
 {
     double sum = 0.0, spread = 0.0, tiles = (double)estimate->tile_count, before = 0.0;

@@ -19,11 +19,12 @@ typedef struct Integrator {
     unsigned (*photons_default)(const RenderOptions *options, uint64_t pixels);
     float roulette_scale; /* PathParams.roulette_scale of bidirectional walks; 0: that is 1 */
     bool guides; /* supports light guides (light/light_guide.h), which options can turn off */
-    /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if `render`
-     * is set. */
+    /* Records the steps for paths of up to frame->path.max_depth segments; free with step_list_destroy. NULL if
+     * `render` is set. */
     bool (*list)(FrameParams *frame, StepList *list, Error *error);
-    /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h), and restores and saves its own
-     * state (checkpoint_restore, checkpoint_save_if_due, checkpoint_end in render/checkpoint.h); may be NULL. */
+    /* Replaces the default loop, which runs passes of `list` over all pixels (render/render.h), and restores and saves
+     * its own state (checkpoint_restore, checkpoint_save_if_due, checkpoint_end in render/checkpoint.h); may be
+     * NULL. */
     bool (*render)(struct RenderRun *run, Error *error);
 } Integrator;
 

@@ -115,8 +115,8 @@ typedef struct RenderCallbacks {
     void (*progress)(void *context, const RenderProgress *progress);
     /* Called as soon as there is an image, then every save_every seconds, also after failures; may be NULL. */
     bool (*save)(void *context, const Film *film, const RenderTotals *totals, Error *error);
-    /* Called after `progress`: between passes, when nothing changes the film and its layers; may be NULL. The film may have to
-     * be brought up to date (render_run_gather). */
+    /* Called after `progress`: between passes, when nothing changes the film and its layers; may be NULL. The film may
+     * have to be brought up to date (render_run_gather). */
     void (*publish)(void *context, struct RenderRun *run, const RenderProgress *progress);
     void *context;
 } RenderCallbacks;

@@ -274,8 +274,8 @@ static bool aov_run(RenderRun *run, uint aovs, const StepList *list, Error *erro
     return run->interface->run(run->backend, &frame, list, &sink, render_run_stop_between(run), NULL, error);
 }
 
-/* Samples that the variables should have by now. Every shard makes those of the whole picture, in proportion to what is done of
- * its share, so that they do not depend on how the picture is divided. */
+/* Samples that the variables should have by now. Every shard makes those of the whole picture, in proportion to what is
+ * done of its share, so that they do not depend on how the picture is divided. */
 static uint64_t aov_samples_wanted(const RenderRun *run, uint64_t samples)
 {
     const RenderOptions *options = run->options;

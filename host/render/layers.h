@@ -46,14 +46,16 @@ typedef struct RenderLayers {
     unsigned aov_samples; /* samples per pixel so far */
 } RenderLayers;
 
-/* Whether the image's halves are compared, by its layers or for its error; their errors must then be independent. layers:
- * may be NULL. */
+/* Whether the image's halves are compared, by its layers or for its error; their errors must then be independent.
+ * layers: may be NULL. */
 bool render_layers_compare_halves(const RenderLayers *layers);
 
-/* Whether layers, or the halves, tell parts of the light apart: FILM_OWN and FILM_LIGHT, or depths. layers: may be NULL. */
+/* Whether layers, or the halves, tell parts of the light apart: FILM_OWN and FILM_LIGHT, or depths. layers: may be
+ * NULL. */
 bool render_layers_split(const RenderLayers *layers);
 
-/* Allocates the layers in `wanted`, and the halves if they are to be kept, for a film like `film`. Call render_layers_destroy even on failure. */
+/* Allocates the layers in `wanted`, and the halves if they are to be kept, for a film like `film`. Call
+ * render_layers_destroy even on failure. */
 bool render_layers_init(RenderLayers *layers, unsigned wanted, bool keep_halves, const Film *film, Error *error);
 void render_layers_destroy(RenderLayers *layers);
 
@@ -63,8 +65,8 @@ void render_layers_archive(Archive *archive, RenderLayers *layers);
 /* Adds an independent part of the picture to half 0 or 1 and to the variances. */
 bool render_layers_add(RenderLayers *layers, const Film *part, unsigned half, Error *error);
 
-/* Adds the layers of another shard of the picture. Its AOVs, which are the same in all shards, are taken (leaving `from` with
- * these) if they have more samples. */
+/* Adds the layers of another shard of the picture. Its AOVs, which are the same in all shards, are taken (leaving
+ * `from` with these) if they have more samples. */
 bool render_layers_merge(RenderLayers *layers, RenderLayers *from, Error *error);
 
 /* rgb[3 * count]: the estimated variance of scale x the picture in pixels first ... first + count - 1. */

@@ -1,5 +1,5 @@
-/* In a building most walls, floors and ceilings are parallel or perpendicular to each other (a "Manhattan world": Coughlan
- * and Yuille 1999). The first axis is the normal that most others are parallel to, the second is that of those
+/* In a building most walls, floors and ceilings are parallel or perpendicular to each other (a "Manhattan world":
+ * Coughlan and Yuille 1999). The first axis is the normal that most others are parallel to, the second is that of those
  * perpendicular to it. */
 #include "render/opening_frame.h"
 

@@ -1,7 +1,7 @@
 /* Parts: what a shard has rendered, in a file, for twinlight-merge(1).
  *
- * A part holds integer sums, so that adding parts gives the same bits in any order, and all that an image needs besides: no
- * scene is loaded to merge. It is valid at any time, finished or not. */
+ * A part holds integer sums, so that adding parts gives the same bits in any order, and all that an image needs
+ * besides: no scene is loaded to merge. It is valid at any time, finished or not. */
 #ifndef TWINLIGHT_RENDER_PART_H
 #define TWINLIGHT_RENDER_PART_H
 
@@ -38,8 +38,8 @@ void part_head_film(PartHead *head, const Film *film, const RenderLayers *layers
 /* Writes a part whose head is complete, in place of the regular file `path`. threads: that may compress. */
 bool part_write(const char *path, PartHead *head, Film *film, RenderLayers *layers, int threads, Error *error);
 
-/* Opens a part, whole and of this version, and reads its head. On failure, with an error that names the file, there is nothing
- * to close. *reader must stay where it is; close it by archive_reader_close. */
+/* Opens a part, whole and of this version, and reads its head. On failure, with an error that names the file, there is
+ * nothing to close. *reader must stay where it is; close it by archive_reader_close. */
 bool part_open(ArchiveReader *reader, const char *path, PartHead *head, Error *error);
 
 /* Makes an empty film and layers for the sums of parts like this one. Destroy both even on failure. */

@@ -163,8 +163,8 @@ static bool record_is_useful(const PhotonRecord *record)
     return record->light != NONE || M_PI * record->spread[0] * record->spread[2] < LOBE_MAX;
 }
 
-/* Sets the spreads of sorted entries. Returns the mean, over the useful entries, of the part of the lobe that the light fills; 1
- * if none is useful. */
+/* Sets the spreads of sorted entries. Returns the mean, over the useful entries, of the part of the lobe that the light
+ * fills; 1 if none is useful. */
 static double entries_spread(GridEntry *entries, uint count)
 {
     double sum = 0.0;

@@ -7,9 +7,9 @@
 #include "render/run.h"
 #include "scene/scene.h"
 
-/* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a stop.
- * Warns if as many as that predict their lights badly.
- * run->frame must be complete but for `photons`. Call photon_map_destroy even on failure. */
+/* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a
+ * stop. Warns if as many as that predict their lights badly. run->frame must be complete but for `photons`. Call
+ * photon_map_destroy even on failure. */
 bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error);
 void photon_map_destroy(PhotonMap *map);
 

@@ -34,7 +34,8 @@ static void path_light_add(void *context, const uint *splats, uint count, uint s
     pthread_mutex_unlock(&light->mutex);
 }
 
-/* Renders one path of path tracing in each of `paths` pixels, by run->photons or without; luminance: of all pixels, 0. */
+/* Renders one path of path tracing in each of `paths` pixels, by run->photons or without; luminance: of all pixels,
+ * 0. */
 static bool paths_render(const RenderRun *run, uint paths, bool photons, float *luminance, Error *error)
 {
     PathLight light = {.luminance = luminance};

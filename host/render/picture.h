@@ -73,8 +73,8 @@ typedef struct Picture {
     char depth_names[SPLAT_DEPTH_MAX + 1][3][16]; /* "depth03.R" ... */
 } Picture;
 
-/* Prepares a picture of the film as it is now, for one thread, which has a lane of the memory. `film` must not change while
- * the picture is in use; `memory` must have been made with these settings and this size. */
+/* Prepares a picture of the film as it is now, for one thread, which has a lane of the memory. `film` must not change
+ * while the picture is in use; `memory` must have been made with these settings and this size. */
 void picture_init(Picture *picture, const PictureSettings *settings, const Film *film, const PictureMemory *memory,
                   int lane);
 

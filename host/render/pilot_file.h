@@ -1,5 +1,5 @@
-/* --pilot: a checkpoint of a short rendering of the picture, from which a shard takes what has been learnt of it. The samples
- * and the chains of that rendering are not taken: those of all shards are to be independent. */
+/* --pilot: a checkpoint of a short rendering of the picture, from which a shard takes what has been learnt of it. The
+ * samples and the chains of that rendering are not taken: those of all shards are to be independent. */
 #ifndef TWINLIGHT_RENDER_PILOT_FILE_H
 #define TWINLIGHT_RENDER_PILOT_FILE_H
 
@@ -10,8 +10,8 @@ typedef struct PilotFile {
     const char *path; /* NULL: there is none */
 } PilotFile;
 
-/* Opens the file of run->options->pilot, if there is one and no checkpoint is resumed, and checks that it is of the picture that
- * the run renders a shard of. Call pilot_file_close even on failure. */
+/* Opens the file of run->options->pilot, if there is one and no checkpoint is resumed, and checks that it is of the
+ * picture that the run renders a shard of. Call pilot_file_close even on failure. */
 bool pilot_file_open(PilotFile *pilot, RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error);
 void pilot_file_close(PilotFile *pilot);
 

@@ -27,8 +27,8 @@ void progress_init(Progress *progress, FILE *stream, bool quiet);
  * PROGRESS_PLAIN_SECONDS have passed since the last line. */
 void progress_update(Progress *progress, const RenderProgress *now);
 
-/* Reports that the fraction `part` (0 ... 1) of a file has been written; the first call for a file must have 0. Shown, with
- * the time that is left, only after PROGRESS_WRITING_SECONDS. */
+/* Reports that the fraction `part` (0 ... 1) of a file has been written; the first call for a file must have 0. Shown,
+ * with the time that is left, only after PROGRESS_WRITING_SECONDS. */
 #define PROGRESS_WRITING_SECONDS 1.0
 void progress_writing(Progress *progress, const char *path, double part);
 
@@ -41,8 +41,8 @@ void progress_time(double seconds, char *text, size_t size);
 /* text = "12.3 M": three digits and a prefix k, M, G or T. `size` >= 16. */
 void progress_rate(double rate, char *text, size_t size);
 
-/* Formats the line for `now`, which says "rendering" or "finishing a pass": with a bar for a terminal of `columns`, without one
- * if columns is 0 or too few. */
+/* Formats the line for `now`, which says "rendering" or "finishing a pass": with a bar for a terminal of `columns`,
+ * without one if columns is 0 or too few. */
 void progress_line(const RenderProgress *now, int columns, char *text, size_t size);
 
 #endif

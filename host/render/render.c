@@ -54,7 +54,8 @@ typedef struct SampleSpan {
     uint64_t items; /* how many */
 } SampleSpan;
 
-/* The latest look at the error (error_watch.h) that is due after this many samples of every pixel, in samples; 0: none is. */
+/* The latest look at the error (error_watch.h) that is due after this many samples of every pixel, in samples; 0: none
+ * is. */
 static uint64_t look_before(uint64_t samples)
 {
     uint64_t look = 0;

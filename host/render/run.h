@@ -62,8 +62,8 @@ void render_frame_seed(FrameParams *frame, uint64_t seed);
 /* Brings the film up to date with its halves, if it has any. */
 bool render_run_gather(RenderRun *run, Error *error);
 
-/* How much of the work is done until the goal for the error is reached, 0 ... 1, if the square of the error falls with the
- * inverse of the work; 0 before the first estimate. */
+/* How much of the work is done until the goal for the error is reached, 0 ... 1, if the square of the error falls with
+ * the inverse of the work; 0 before the first estimate. */
 double render_run_error_fraction(const RenderRun *run);
 
 /* Calls `progress` and `publish`. fraction: of the samples wanted; 0 if their number is not limited. */

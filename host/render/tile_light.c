@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* One in this many pixels may have more noise than is usual in the tile, because the pixel filter spreads a bright path over
- * several; and how many times the usual noise counts as noise. docs/NUMERICS.md. */
+/* One in this many pixels may have more noise than is usual in the tile, because the pixel filter spreads a bright path
+ * over several; and how many times the usual noise counts as noise. docs/NUMERICS.md. */
 #define UNUSUAL_SHARE 7
 #define USUAL_FACTOR 3.0
 
@@ -28,7 +28,8 @@ double tile_mean(const double *values, size_t count)
     return sum / (double)count;
 }
 
-/* A pixel's value without the part of its difference that is more than its noise: toward the darker half or the brighter one. */
+/* A pixel's value without the part of its difference that is more than its noise: toward the darker half or the
+ * brighter one. */
 static double without_excess(const TileValues *values, size_t pixel, double noise, bool lower)
 {
     double difference = fabs(values->difference[pixel]), value = values->picture[pixel];
@@ -37,8 +38,8 @@ static double without_excess(const TileValues *values, size_t pixel, double nois
     return value + excess * ((lower ? fmin(a, b) : fmax(a, b)) - value);
 }
 
-/* Takes from the values what differs by more than the tile's usual noise, and keeps the rest as noise. Values are moved toward
- * the tile's mean, as it is without any bright path that one half alone has met. */
+/* Takes from the values what differs by more than the tile's usual noise, and keeps the rest as noise. Values are moved
+ * toward the tile's mean, as it is without any bright path that one half alone has met. */
 static void excess_remove(const TileValues *values, double light[TILE_PIXELS], double noise[TILE_PIXELS])
 {
     double usual = usual_noise(values);

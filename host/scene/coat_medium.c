@@ -11,8 +11,8 @@
 #define WALK_STRIDE 20219u /* odd: in its order, the first walks have all cosines, too */
 #define WALK_KEY 1u
 
-/* Largest component of a mix's diffuse reflectance, unless the layers need more: what is left of 1 keeps `amount` small,
- * so that light that is not scattered keeps its dependence on direction. */
+/* Largest component of a mix's diffuse reflectance, unless the layers need more: what is left of 1 keeps `amount`
+ * small, so that light that is not scattered keeps its dependence on direction. */
 #define REFLECTANCE_AIM 0.8f
 
 /* A photon between interface and conductor. */

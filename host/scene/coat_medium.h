@@ -4,8 +4,8 @@
 
 #include "math/vec.h"
 
-/* The layers: a smooth interface of index `eta` over the outside, a medium of extinction 1 per unit of length as pbrt-v4
- * has it, and a smooth conductor. */
+/* The layers: a smooth interface of index `eta` over the outside, a medium of extinction 1 per unit of length as
+ * pbrt-v4 has it, and a smooth conductor. */
 typedef struct CoatLayers {
     float eta; /* > 0 */
     float thickness; /* >= 0 */
@@ -25,7 +25,8 @@ typedef struct CoatMix {
 Vec3 coat_medium_scattered(const CoatLayers *layers);
 
 /* The mix for these layers: its diffuse part reflects coat_medium_scattered, and the thickness is reduced so that light
- * that is not scattered keeps its share. amount = 0 if nothing is scattered. The result is the same on every machine. */
+ * that is not scattered keeps its share. amount = 0 if nothing is scattered. The result is the same on every
+ * machine. */
 CoatMix coat_medium_mix(const CoatLayers *layers);
 
 #endif

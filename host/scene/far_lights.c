@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-/* The part of the power that is divided by power: so a light has at least a quarter of its samples if another one, of a small
- * solid angle, takes the rest, which may not reach the scene at all. */
+/* The part of the power that is divided by power: so a light has at least a quarter of its samples if another one, of a
+ * small solid angle, takes the rest, which may not reach the scene at all. */
 #define FAR_BY_POWER 0.25
 
 /* Smaller solid angles count as this, that of the sun. */

@@ -27,8 +27,8 @@ typedef struct LightBounds {
 LightBounds light_bounds_empty(void);
 void light_bounds_join(LightBounds *a, const LightBounds *b);
 
-/* Bounds of one light. power: luminance of its flux; of a light at infinity without a portal, of the irradiance of a surface
- * that faces it. */
+/* Bounds of one light. power: luminance of its flux; of a light at infinity without a portal, of the irradiance of a
+ * surface that faces it. */
 LightBounds light_bounds(const SceneView *view, uint light, double power);
 
 /* Distance from a point to the farthest corner of a box. */

@@ -199,9 +199,9 @@ static double world_disk(const Scene *scene)
     return M_PI * radius * radius;
 }
 
-/* *power: luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of the
- * bounding sphere, or through their portal. *solid_angle: from which most of the light of those at infinity (light_is_far)
- * comes. */
+/* *power: luminance of the flux that a light sends into the scene; for infinite and distant lights, through the disk of
+ * the bounding sphere, or through their portal. *solid_angle: from which most of the light of those at infinity
+ * (light_is_far) comes. */
 static bool light_power(Scene *scene, uint index, double *power, double *solid_angle, Error *error)
 {
     const Light *light = &ARRAY_AT(&scene->lights, Light, index);
@@ -263,8 +263,8 @@ static bool no_light(size_t count, Error *error)
     return error_fix(error, "add a LightSource, or an AreaLightSource before a shape, with a positive radiance");
 }
 
-/* Fills `powers` with those by which light subpaths choose lights, solid_angles as light_power does, and at_vertices; builds the
- * tree, sets select_pdf of every light, and lists the infinite lights. */
+/* Fills `powers` with those by which light subpaths choose lights, solid_angles as light_power does, and at_vertices;
+ * builds the tree, sets select_pdf of every light, and lists the infinite lights. */
 static bool lights_weigh(Scene *scene, double *powers, double *solid_angles, double *at_vertices, Error *error)
 {
     size_t count = scene->lights.count, dark = 0;

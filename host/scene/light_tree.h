@@ -4,8 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Sets scene->light_nodes, Light.leaf, and FEATURE_LIGHT_TREE if it can tell lights that have power apart. powers: of every
- * light, as light_bounds takes them. To be called before the scene is packed. */
+/* Sets scene->light_nodes, Light.leaf, and FEATURE_LIGHT_TREE if it can tell lights that have power apart. powers: of
+ * every light, as light_bounds takes them. To be called before the scene is packed. */
 bool light_tree_build(Scene *scene, const double *powers, Error *error);
 
 #endif

@@ -190,8 +190,8 @@ bool scene_has_delta(const Scene *scene);
 /* Whether it has area lights of alpha 0. */
 bool scene_has_invisible_light(const Scene *scene);
 
-/* Whether there may be light that path tracing by itself cannot find, without photons: of lights that no ray hits, by way
- * of smooth specular surfaces. */
+/* Whether there may be light that path tracing by itself cannot find, without photons: of lights that no ray hits, by
+ * way of smooth specular surfaces. */
 bool scene_hides_light(const Scene *scene);
 
 /* Sets the feature mask, of the kernels' frame too. */

@@ -1,5 +1,5 @@
-/* Where a scene has smooth specular surfaces: the boxes of their primitives. Light subpaths are aimed at them, since of a
- * light in a wide world hardly any that is drawn from it meets one. */
+/* Where a scene has smooth specular surfaces: the boxes of their primitives. Light subpaths are aimed at them, since of
+ * a light in a wide world hardly any that is drawn from it meets one. */
 #ifndef TWINLIGHT_SCENE_SMOOTH_BOXES_H
 #define TWINLIGHT_SCENE_SMOOTH_BOXES_H
 

@@ -1,6 +1,6 @@
-/* The connections of clients. At most CONNECTIONS_MAX stay open: a new one replaces the one on which the longest time has
- * passed since it was made or last had a whole request. So clients that hang, or that send or read ever so slowly, never
- * keep others out. For use by one thread. */
+/* The connections of clients. At most CONNECTIONS_MAX stay open: a new one replaces the one on which the longest time
+ * has passed since it was made or last had a whole request. So clients that hang, or that send or read ever so slowly,
+ * never keep others out. For use by one thread. */
 #ifndef TWINLIGHT_SERVE_CONNECTIONS_H
 #define TWINLIGHT_SERVE_CONNECTIONS_H
 

@@ -1,4 +1,5 @@
-/* The error of a rendering against time, from its halves: two pictures of the same expectation with independent errors. */
+/* The error of a rendering against time, from its halves: two pictures of the same expectation with independent
+ * errors. */
 #ifndef TWINLIGHT_SERVE_ERROR_CURVE_H
 #define TWINLIGHT_SERVE_ERROR_CURVE_H
 

@@ -18,12 +18,12 @@ typedef enum RequestKind {
     REQUEST_PICTURE
 } RequestKind;
 
-/* What a path asks for: /TOKEN/, /TOKEN/status.json, /TOKEN/picture. Forbidden without the token; how many of its digits are
- * right does not show in the time that this takes. */
+/* What a path asks for: /TOKEN/, /TOKEN/status.json, /TOKEN/picture. Forbidden without the token; how many of its
+ * digits are right does not show in the time that this takes. */
 RequestKind request_kind(const char *path, const char *token);
 
-/* Whether the value of a Host header is "localhost", an address of IPv4 or IPv6 in digits, or `own`, with or without a port:
- * a name that somebody else could let lead here is refused. NULL: there is no header. */
+/* Whether the value of a Host header is "localhost", an address of IPv4 or IPv6 in digits, or `own`, with or without a
+ * port: a name that somebody else could let lead here is refused. NULL: there is no header. */
 bool host_allowed(const char *host, const char *own);
 
 #endif

@@ -341,8 +341,8 @@ Server *server_begin(const OptionAddress *address, Snapshot *snapshot, const Ren
     return server;
 }
 
-/* Whether a client is there that has not got the last picture. Of several clients nothing more is known than that one has
- * it. */
+/* Whether a client is there that has not got the last picture. Of several clients nothing more is known than that one
+ * has it. */
 static bool client_waits(const Server *server)
 {
     const union MHD_DaemonInfo *info = MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_CURRENT_CONNECTIONS);

@@ -1,6 +1,6 @@
-/* What readers of a rendering under way see of it: copies of the layers that somebody asks for, which the rendering thread
- * renews between passes. Readers never make that thread wait: while one of them holds the lock, it goes on and publishes
- * later. */
+/* What readers of a rendering under way see of it: copies of the layers that somebody asks for, which the rendering
+ * thread renews between passes. Readers never make that thread wait: while one of them holds the lock, it goes on and
+ * publishes later. */
 #ifndef TWINLIGHT_SERVE_SNAPSHOT_H
 #define TWINLIGHT_SERVE_SNAPSHOT_H
 
@@ -12,8 +12,8 @@
 /* Fewest seconds between two publications. */
 #define SNAPSHOT_SECONDS 1.0
 
-/* Publications, and what readers do with them, take at most this part of the threads' time: the next one waits until the
- * latest has taken no more, but not for more than SNAPSHOT_SECONDS_MOST. */
+/* Publications, and what readers do with them, take at most this part of the threads' time: the next one waits until
+ * the latest has taken no more, but not for more than SNAPSHOT_SECONDS_MOST. */
 #define SNAPSHOT_TIME_PART 0.0075
 #define SNAPSHOT_SECONDS_MOST 20.0
 
@@ -59,18 +59,19 @@ void snapshot_destroy(Snapshot *snapshot);
 /* The layer of this name, or NULL. The caller holds the lock. */
 SnapshotLayer *snapshot_find(Snapshot *snapshot, const char *name);
 
-/* Asks for a layer: it is part of publications for SNAPSHOT_WANTED_SECONDS. Before the first publication the picture alone
- * is known. The caller holds the lock. */
+/* Asks for a layer: it is part of publications for SNAPSHOT_WANTED_SECONDS. Before the first publication the picture
+ * alone is known. The caller holds the lock. */
 void snapshot_ask(SnapshotLayer *layer);
 
 /* Asks for the status, and with it for publications, for as long. The caller holds the lock. */
 void snapshot_watch(Snapshot *snapshot);
 
-/* Counts what the calling thread, a reader, has used since *counted, which becomes timing_thread. The caller holds the lock. */
+/* Counts what the calling thread, a reader, has used since *counted, which becomes timing_thread. The caller holds the
+ * lock. */
 void snapshot_reader_count(Snapshot *snapshot, double *counted);
 
-/* Takes the lock if a publication is due, somebody wants a layer or the status, and no reader holds the lock. Then publish and call
- * pthread_mutex_unlock. */
+/* Takes the lock if a publication is due, somebody wants a layer or the status, and no reader holds the lock. Then
+ * publish and call pthread_mutex_unlock. */
 bool snapshot_due(Snapshot *snapshot);
 
 /* Renews all layers that are wanted. The caller holds the lock, and the film does not change meanwhile. */

@@ -1,5 +1,5 @@
-/* Sends the picture to the viewer tev as it converges, from a thread of its own. A viewer that is missing, slow, hanging or
- * gone costs the rendering nothing: while one snapshot is being sent, others are dropped. */
+/* Sends the picture to the viewer tev as it converges, from a thread of its own. A viewer that is missing, slow,
+ * hanging or gone costs the rendering nothing: while one snapshot is being sent, others are dropped. */
 #ifndef TWINLIGHT_SERVE_TEV_H
 #define TWINLIGHT_SERVE_TEV_H
 
@@ -31,8 +31,8 @@ typedef struct Tev {
     int packet_rows;
 } Tev;
 
-/* Looks the host up, which must succeed, and starts the thread; the viewer need not be there yet. `image` and `snapshot`
- * must outlive it. Call tev_end even on failure. */
+/* Looks the host up, which must succeed, and starts the thread; the viewer need not be there yet. `image` and
+ * `snapshot` must outlive it. Call tev_end even on failure. */
 bool tev_begin(Tev *tev, const OptionAddress *address, const char *image, Snapshot *snapshot, Error *error);
 
 /* Sends what was published last, if that takes at most TEV_END_SECONDS, and ends the thread. */

@@ -9,8 +9,8 @@
 /* Operations that a packet begins with, after its length. */
 enum { TEV_CREATE_IMAGE = 4, TEV_UPDATE_IMAGE_V3 = 6 };
 
-/* What is not data or name: length, operation, focus, the name's end, number of channels, their names, the rectangle, and
- * offsets and strides. */
+/* What is not data or name: length, operation, focus, the name's end, number of channels, their names, the rectangle,
+ * and offsets and strides. */
 #define HEADER_BYTES (4 + 1 + 1 + 1 + 4 + CHANNELS * 2 + 4 * 4 + CHANNELS * 2 * 8)
 
 /* A packet being written. */

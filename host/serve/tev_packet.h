@@ -1,5 +1,5 @@
-/* Packets for tev, an image viewer (https://github.com/Tom94/tev): numbers are little-endian, and the first is the number of
- * bytes of the whole packet, itself included. */
+/* Packets for tev, an image viewer (https://github.com/Tom94/tev): numbers are little-endian, and the first is the
+ * number of bytes of the whole packet, itself included. */
 #ifndef TWINLIGHT_SERVE_TEV_PACKET_H
 #define TWINLIGHT_SERVE_TEV_PACKET_H
 

@@ -48,8 +48,8 @@
 /* Cosine at which a Fresnel reflectance of Schlick's form equals its mean over a diffuse field: (1 - c)^5 = 1/21. */
 #define FRESNEL_MEAN_COSINE 0.456f
 
-/* The conductor's alphas are in Bsdf.flags: above BSDF_BASE_SHIFT two numbers of BSDF_BASE_BITS, the square roots of the
- * alphas in [0, 1]; 0 if it is smooth. */
+/* The conductor's alphas are in Bsdf.flags: above BSDF_BASE_SHIFT two numbers of BSDF_BASE_BITS, the square roots of
+ * the alphas in [0, 1]; 0 if it is smooth. */
 #define BSDF_BASE_SHIFT 4u
 #define BSDF_BASE_BITS 14u
 #define BSDF_BASE_MAX 16383u
@@ -85,8 +85,8 @@ typedef struct CoatedConductor {
     float direct_weight, rest_weight; /* of lobes, for the choice between them */
 } CoatedConductor;
 
-/* What the coat does with light from a direction. A number below `coat` draws its reflection, one below `direct`, which is
- * no less, direct reflection, any other the rest. */
+/* What the coat does with light from a direction. A number below `coat` draws its reflection, one below `direct`, which
+ * is no less, direct reflection, any other the rest. */
 typedef struct CoatedSide {
     Vec3 w; /* the direction, w.z > 0 */
     Vec3 inside; /* w' */

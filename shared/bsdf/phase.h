@@ -1,7 +1,7 @@
 /* The phase function of Henyey and Greenstein ("Diffuse radiation in the galaxy", 1941) as a Bsdf of kind
- * MATERIAL_PHASE: what scatters at a vertex in a medium. Its frame has the direction wo, from which the light is seen, as
- * z axis. With q = 1 - cos of the angle between wi and the foremost direction, which is -wo for g > 0 and wo for g < 0,
- * its density is (1 - g^2) / (4 pi ((1 - |g|)^2 + 2 |g| q)^(3/2)): nothing cancels, whatever g is. */
+ * MATERIAL_PHASE: what scatters at a vertex in a medium. Its frame has the direction wo, from which the light is seen,
+ * as z axis. With q = 1 - cos of the angle between wi and the foremost direction, which is -wo for g > 0 and wo for g <
+ * 0, its density is (1 - g^2) / (4 pi ((1 - |g|)^2 + 2 |g| q)^(3/2)): nothing cancels, whatever g is. */
 #ifndef TWINLIGHT_BSDF_PHASE_H
 #define TWINLIGHT_BSDF_PHASE_H
 

@@ -58,7 +58,8 @@ SHARED_FUNCTION bool film_axis_range(const FilmAxis *axis, float film, uint *fir
     return true;
 }
 
-/* Coverage of `film` by the filters along the axis: the sum over pixels i of |f(film - i - 0.5)| / (integral of |f|). */
+/* Coverage of `film` by the filters along the axis: the sum over pixels i of |f(film - i - 0.5)| / (integral of
+ * |f|). */
 SHARED_FUNCTION float film_axis_sum(const FilmAxis *axis, float film)
 {
     uint first, last;

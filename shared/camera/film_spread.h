@@ -13,8 +13,8 @@
  * the number of parts that a pixel's samples have given it is exact. */
 #define SPREAD_PARTS 256u
 
-/* Units per sample in the film's counts. A pixel is divided by the parts that it has got, so that a constant image stays
- * constant wherever samples lie. */
+/* Units per sample in the film's counts. A pixel is divided by the parts that it has got, so that a constant image
+ * stays constant wherever samples lie. */
 SHARED_FUNCTION uint film_sample_units(uint reconstruction)
 {
     return reconstruction == RECONSTRUCTION_SPLAT ? SPREAD_PARTS : 1u;
@@ -157,9 +157,9 @@ SHARED_FUNCTION void film_spread_add(const FilmView *film, FilmPending *pending,
         atomic_count_add(film->counts + splat->slot, SPREAD_PARTS);
 }
 
-/* Adds a splat of a buffer, and a sample to its pixel unless the splat comes from the light; of a splat that is spread, a
- * part of a sample to each of its pixels. Any number of threads or work-items may do so concurrently. pending: those of
- * this thread; NULL: none. */
+/* Adds a splat of a buffer, and a sample to its pixel unless the splat comes from the light; of a splat that is spread,
+ * a part of a sample to each of its pixels. Any number of threads or work-items may do so concurrently. pending: those
+ * of this thread; NULL: none. */
 SHARED_FUNCTION void film_splat_add(const FilmView *film, FilmPending *pending, __global const uint *splats,
                                     uint stride, uint item)
 {

@@ -25,8 +25,8 @@ SHARED_FUNCTION float pixel_filter_invert(const SceneView *scene, uint table, fl
     return ((float)cell + inside) * (2.0f / (float)PIXEL_FILTER_CELLS) - 1.0f;
 }
 
-/* The weight of a splat, whose sign is f's at the pixel that it names. If the film spreads splats over pixels, it applies
- * the sign of each. */
+/* The weight of a splat, whose sign is f's at the pixel that it names. If the film spreads splats over pixels, it
+ * applies the sign of each. */
 SHARED_FUNCTION float filter_sign_kept(__global const FilmParams *film, float weight)
 {
     return film->reconstruction == RECONSTRUCTION_SPLAT ? float_abs(weight) : weight;

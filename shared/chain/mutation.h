@@ -123,8 +123,8 @@ typedef struct ChainSplat {
     float visits;
 } ChainSplat;
 
-/* Splats a path. random: block CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart (host/mmlt/combination.h): all of a
- * splat or nothing of it, at random. */
+/* Splats a path. random: block CHAIN_BLOCK_DECIDE. A path's excess over the clamping threshold is kept apart
+ * (host/mmlt/combination.h): all of a splat or nothing of it, at random. */
 SHARED_FUNCTION void chain_splat(const SceneView *scene, __global uint *restrict splats,
                                  __global uint *restrict diagnostics, uint item, const ChainSplat *path, Random4 random)
 {

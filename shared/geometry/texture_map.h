@@ -5,8 +5,8 @@
 #include "layout/scene_view.h"
 #include "math/elementary.h"
 
-/* Where a texture is evaluated: world-space position, the surface's (u, v) and its geometric normal, on either side; read
- * by directionmix alone, which alpha textures do not contain. */
+/* Where a texture is evaluated: world-space position, the surface's (u, v) and its geometric normal, on either side;
+ * read by directionmix alone, which alpha textures do not contain. */
 typedef struct TexturePoint {
     Vec3 p;
     Vec2 uv;

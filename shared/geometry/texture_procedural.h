@@ -12,8 +12,8 @@ SHARED_FUNCTION float texture_windy(Vec3 p)
     return float_abs(strength) * noise_fbm(p, 0.5f, 6u);
 }
 
-/* Colours of marble: segment i < 6 is a cubic Bezier curve with the control points i ... i + 3. Three have a colour of their
- * own; the others are the first. */
+/* Colours of marble: segment i < 6 is a cubic Bezier curve with the control points i ... i + 3. Three have a colour of
+ * their own; the others are the first. */
 SHARED_FUNCTION Vec3 texture_marble_color(uint i)
 {
     if (i == 3u)

@@ -141,8 +141,8 @@ __kernel void aov_shade_hits(__global const FrameParams *restrict frame, __globa
             aov_store(paths, stride, item, aov, aov_value(scene, aov, &hit));
 }
 
-/* From: samples. To: that of the next variable (PATH_AOV) of the pass, for the image of that number; of an AOV_DISTANCE none
- * if the ray has met nothing. */
+/* From: samples. To: that of the next variable (PATH_AOV) of the pass, for the image of that number; of an AOV_DISTANCE
+ * none if the ray has met nothing. */
 __kernel void aov_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                         __global uint *restrict splats)
 {

@@ -1,6 +1,6 @@
 /* The list of auxiliary variables of a pixel (AOVs), besides light: what denoisers and compositors want. Made from it
- * are their numbers (AOV_*, FrameParams.pass.aovs), the dispatch of kernels/aov.cl, and the layers of an image that hold them
- * (host/render/layers.h), with their names and channels. */
+ * are their numbers (AOV_*, FrameParams.pass.aovs), the dispatch of kernels/aov.cl, and the layers of an image that
+ * hold them (host/render/layers.h), with their names and channels. */
 #ifndef TWINLIGHT_LAYOUT_AOV_LIST_H
 #define TWINLIGHT_LAYOUT_AOV_LIST_H
 

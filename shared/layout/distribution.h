@@ -6,8 +6,8 @@
 
 /* Draws an index below `count` (> 0) from an alias table. bits0 and bits1 form one 64-bit fraction. The integer part of
  * its product with `count` is the bucket, the fractional part decides whether the bucket's own index is kept. All
- * buckets are equally probable to within count 2^-64. *rest: where in its part of the fraction that was, uniform in (0, 1)
- * given the index, and stratified as bits0 is. */
+ * buckets are equally probable to within count 2^-64. *rest: where in its part of the fraction that was, uniform in (0,
+ * 1) given the index, and stratified as bits0 is. */
 SHARED_FUNCTION uint alias_sample_rest(__global const AliasBucket *buckets, uint count, uint bits0, uint bits1,
                                        float *rest)
 {

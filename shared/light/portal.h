@@ -72,8 +72,8 @@ SHARED_FUNCTION Vec3 portal_direction(const Portal *portal, Vec2 uv, float *stre
 
 /* ---- windows ----------------------------------------------------------------------------------------------------- */
 
-/* A part of an axis of the square, in cells: from `low` in cell `first` to cell `last`; head and tail: how much of these
- * two. If they are one cell, its part is `head`. */
+/* A part of an axis of the square, in cells: from `low` in cell `first` to cell `last`; head and tail: how much of
+ * these two. If they are one cell, its part is `head`. */
 typedef struct PortalSpan {
     uint first, last;
     float low, head, tail;

@@ -1,6 +1,6 @@
-/* Gradient noise on the integer lattice (Perlin 2002, "Improving Noise", with its published permutation) and sums of its
- * octaves. Gradients are chosen as in pbrt-v4, whose last four of sixteen differ from Perlin's, so that the patterns are
- * pbrt's. */
+/* Gradient noise on the integer lattice (Perlin 2002, "Improving Noise", with its published permutation) and sums of
+ * its octaves. Gradients are chosen as in pbrt-v4, whose last four of sixteen differ from Perlin's, so that the
+ * patterns are pbrt's. */
 #ifndef TWINLIGHT_MATH_NOISE_H
 #define TWINLIGHT_MATH_NOISE_H
 
@@ -78,8 +78,8 @@ SHARED_FUNCTION float noise(Vec3 p)
     return noise_lerp(noise_fade(dz), noise_lerp(fade, row[0], row[1]), noise_lerp(fade, row[2], row[3]));
 }
 
-/* Sum of octaves i < `octaves` of the noise (`absolute`: of its absolute value) at 1.99^i times the frequency, weighted by
- * omega^i; *weight: omega^octaves. */
+/* Sum of octaves i < `octaves` of the noise (`absolute`: of its absolute value) at 1.99^i times the frequency, weighted
+ * by omega^i; *weight: omega^octaves. */
 SHARED_FUNCTION float noise_octaves(Vec3 p, float omega, uint octaves, bool absolute, float *weight)
 {
     float sum = 0.0f, frequency = 1.0f;
@@ -100,8 +100,8 @@ SHARED_FUNCTION float noise_fbm(Vec3 p, float omega, uint octaves)
     return noise_octaves(p, omega, octaves, false, &weight);
 }
 
-/* pbrt's Turbulence without a footprint. In place of the octaves that it leaves out, pbrt adds their mean, 0.2, and counts
- * one more than there are. */
+/* pbrt's Turbulence without a footprint. In place of the octaves that it leaves out, pbrt adds their mean, 0.2, and
+ * counts one more than there are. */
 SHARED_FUNCTION float noise_turbulence(Vec3 p, float omega, uint octaves)
 {
     float weight, sum = noise_octaves(p, omega, octaves, true, &weight);

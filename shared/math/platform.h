@@ -73,7 +73,8 @@ typedef uint64_t ulong;
 #endif
 
 /* Calls on devices, whose compilers otherwise inline everything; for what makes a kernel too large to compile. NVIDIA's
- * (driver 580) did not end on a kernel with several kinds of connection inlined, and took 2 s without; docs/TUNING.md. */
+ * (driver 580) did not end on a kernel with several kinds of connection inlined, and took 2 s without;
+ * docs/TUNING.md. */
 #define SHARED_FUNCTION_CALLED SHARED_FUNCTION
 
 /* Index of the work item that a kernel runs for, set by the caller of the kernel (backend_cpu/kernel_loop.h). One copy

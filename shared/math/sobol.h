@@ -1,7 +1,7 @@
-/* Points of Sobol's sequence, scrambled as Owen does ("Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995) by hashes
- * (Burley, "Practical hash-based Owen scrambling", 2020): any 2^m consecutive samples, from a multiple of 2^m on, fill their
- * four dimensions evenly, and every single point is uniform. Sets of four dimensions whose order is shuffled, too, are
- * padded together to as many dimensions as paths need. Integers alone: the same bits everywhere. */
+/* Points of Sobol's sequence, scrambled as Owen does ("Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995) by
+ * hashes (Burley, "Practical hash-based Owen scrambling", 2020): any 2^m consecutive samples, from a multiple of 2^m
+ * on, fill their four dimensions evenly, and every single point is uniform. Sets of four dimensions whose order is
+ * shuffled, too, are padded together to as many dimensions as paths need. Integers alone: the same bits everywhere. */
 #ifndef TWINLIGHT_MATH_SOBOL_H
 #define TWINLIGHT_MATH_SOBOL_H
 
@@ -17,8 +17,8 @@ SHARED_FUNCTION uint bits_reversed(uint x)
     return x >> 16 | x << 16;
 }
 
-/* An Owen scrambling in reversed bit order: whether a bit flips depends on the bits below it and the seed. (Laine and Karras
- * 2011; the constants are Vegdahl's, "Building a better LK hash", 2021.) */
+/* An Owen scrambling in reversed bit order: whether a bit flips depends on the bits below it and the seed. (Laine and
+ * Karras 2011; the constants are Vegdahl's, "Building a better LK hash", 2021.) */
 SHARED_FUNCTION uint owen_scrambled(uint x, uint seed)
 {
     x ^= x * 0x3d20adeau;
@@ -38,8 +38,8 @@ SHARED_FUNCTION uint sobol_sum(uint d, uint index)
     return sum;
 }
 
-/* Four dimensions of point `sample` of the set that `seeds` chooses, the first of which is number `first` of the result, and
- * so on around. The first two have the best projections. */
+/* Four dimensions of point `sample` of the set that `seeds` chooses, the first of which is number `first` of the
+ * result, and so on around. The first two have the best projections. */
 SHARED_FUNCTION Random4 sobol_four(uint sample, Random4 seeds, uint first)
 {
     uint order = seeds.x[0] ^ (seeds.x[2] >> 16 | seeds.x[2] << 16); /* mixed as MurmurHash3 ends (Appleby 2011) */

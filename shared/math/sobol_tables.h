@@ -1,7 +1,8 @@
-/* Direction numbers of dimensions 2 to 4 of Sobol's sequence with the initial numbers of Joe and Kuo ("Constructing Sobol
- * sequences with better two-dimensional projections", 2008: 1; 1 3; 1 3 1), summed up for the values of four bits: of
- * dimension 2 + d, entry (8 d + n) 16 + b has the sum for bits 4 n ... 4 n + 3 that are b. Everything is in reversed bit
- * order, the index and the sums: bit 31 of the index is its lowest. tests/math/test_math_sobol.c derives them anew. */
+/* Direction numbers of dimensions 2 to 4 of Sobol's sequence with the initial numbers of Joe and Kuo ("Constructing
+ * Sobol sequences with better two-dimensional projections", 2008: 1; 1 3; 1 3 1), summed up for the values of four
+ * bits: of dimension 2 + d, entry (8 d + n) 16 + b has the sum for bits 4 n ... 4 n + 3 that are b. Everything is in
+ * reversed bit order, the index and the sums: bit 31 of the index is its lowest. tests/math/test_math_sobol.c derives
+ * them anew. */
 #ifndef TWINLIGHT_MATH_SOBOL_TABLES_H
 #define TWINLIGHT_MATH_SOBOL_TABLES_H
 

@@ -66,7 +66,8 @@ SHARED_FUNCTION float bd_random_mix(const SceneView *scene, __global const uint 
     return random_float(bd_random(scene->frame, paths, item, bd_random_vertex(side, depth, BD_RANDOM_MIX)).x[0]);
 }
 
-/* The number that draws the distance of segment `depth` of a side; in scenes without scattering media it is not used. */
+/* The number that draws the distance of segment `depth` of a side; in scenes without scattering media it is not
+ * used. */
 SHARED_FUNCTION uint bd_random_distance(const SceneView *scene, __global const uint *paths, uint item, uint side,
                                         uint depth)
 {

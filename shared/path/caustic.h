@@ -95,8 +95,8 @@ SHARED_FUNCTION bool caustic_has_shadows(ulong features)
     return (features & FEATURE_MEDIUM) != 0u && (features & FEATURE_DELTA_LIGHT) != 0u;
 }
 
-/* In scenes with such shadow rays: stores that of the caustic path's next ray, to the light at a point that the path was
- * drawn for, if the ray meets it. */
+/* In scenes with such shadow rays: stores that of the caustic path's next ray, to the light at a point that the path
+ * was drawn for, if the ray meets it. */
 SHARED_FUNCTION_APART void caustic_shadow_store(const SceneView *scene, __global const uint *restrict paths,
                                                 __global const uint *restrict rays, __global uint *restrict shadows,
                                                 uint item)

@@ -68,7 +68,8 @@ SHARED_FUNCTION uint receiver_find(uint everywhere, uint delta, uint last)
     return number > 0u && caustic && receiver_draws(everywhere, delta, number) ? number : 0u;
 }
 
-/* How a camera subpath left its latest vertex that scattered otherwise than by a delta lobe, in fields from `base` on. */
+/* How a camera subpath left its latest vertex that scattered otherwise than by a delta lobe, in fields from `base`
+ * on. */
 #define RECEIVER_PDF 0u /* p of the direction */
 #define RECEIVER_POINT 1u /* 3 */
 #define RECEIVER_DIRECTION 4u /* 3 */

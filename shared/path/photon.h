@@ -183,8 +183,8 @@ SHARED_FUNCTION bool photon_lobe_sample(const PhotonLobe *lobe, Vec2 u, Vec3 *w)
     return 1.0f > PHOTON_COSINE_MIN * vec3_length(framed);
 }
 
-/* Density per solid angle with which photon_choose and photon_lobe_sample give the direction w at p, counting photons of
- * one light of no extent alone, or (light NONE) those of all others. */
+/* Density per solid angle with which photon_choose and photon_lobe_sample give the direction w at p, counting photons
+ * of one light of no extent alone, or (light NONE) those of all others. */
 SHARED_FUNCTION float photon_density(PhotonParams params, __global const uint *photons, const PhotonSets *found, Vec3 p,
                                      Vec3 w, uint light)
 {

@@ -116,7 +116,8 @@ START_TEST(test_truncated)
 }
 END_TEST
 
-/* Bits of the frame's descriptor that Zstandard leaves unused do not count: then the state is the saved one all the same. */
+/* Bits of the frame's descriptor that Zstandard leaves unused do not count: then the state is the saved one all the
+ * same. */
 START_TEST(test_flipped)
 {
     State saved = state_make();

@@ -27,8 +27,8 @@ static double exponential_integral2(double depth)
     return sum;
 }
 
-/* Without an interface and over black, a little albedo a scatters a times the integral of E2 squared once: E2 of diffuse
- * light gets to a depth, and of what is scattered there the same part leaves on both sides together. */
+/* Without an interface and over black, a little albedo a scatters a times the integral of E2 squared once: E2 of
+ * diffuse light gets to a depth, and of what is scattered there the same part leaves on both sides together. */
 START_TEST(test_single_scattering)
 {
     const float thicknesses[] = {0.1f, 0.5f, 3.0f};

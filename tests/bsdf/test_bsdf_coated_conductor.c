@@ -137,8 +137,8 @@ static void flux_add(Flux *flux, Vec3 wo, Vec3 wi, double weight, double alpha)
     flux->cells[cell] += weight / PHOTONS;
 }
 
-/* One random walk through the layers that define the material: a photon from above, a dielectric interface, a medium that
- * absorbs, a conductor. */
+/* One random walk through the layers that define the material: a photon from above, a dielectric interface, a medium
+ * that absorbs, a conductor. */
 static void layers_walk(const TestScene *scene, const Bsdf *coat, const Bsdf *base, double thickness, Vec3 wo,
                         double alpha, TestRandom *random, Flux *flux)
 {

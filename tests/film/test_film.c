@@ -145,7 +145,8 @@ START_TEST(test_merge_equals_one_film)
 }
 END_TEST
 
-/* Large films are merged and cleared by several threads; some sums are full, and stay so. Parts of a film are cleared, too. */
+/* Large films are merged and cleared by several threads; some sums are full, and stay so. Parts of a film are cleared,
+ * too. */
 START_TEST(test_threads)
 {
     enum { WIDTH = 300, HEIGHT = 250, PIXELS = WIDTH * HEIGHT };

@@ -18,8 +18,8 @@ static double rest_at(int value)
     return 0.25 + 0.05 * (value % 7);
 }
 
-/* A film whose pixels have `samples` each, with direct light and, in light sums that count as `light_samples` per pixel, the rest;
- * complete samples if that is 0. */
+/* A film whose pixels have `samples` each, with direct light and, in light sums that count as `light_samples` per
+ * pixel, the rest; complete samples if that is 0. */
 static void film_of_samples(Film *film, uint reconstruction, unsigned samples, unsigned light_samples)
 {
     Error error;

@@ -133,7 +133,8 @@ static void samples_add(const LightFixture *f, Film *film, uint name, uint sampl
     }
 }
 
-/* Samples of equal color give a constant image wherever they lie, up to the border: a pixel is divided by what it got. */
+/* Samples of equal color give a constant image wherever they lie, up to the border: a pixel is divided by what it
+ * got. */
 START_TEST(test_constant)
 {
     const FilterSettings *s = &FILTER_CASES[_i].settings;
@@ -252,7 +253,8 @@ static double variance_left(const FilmAxis *axis)
 
 enum { BATCHES = 24, BATCH = 20000 };
 
-/* Splats at positions that are uniform in and around the crop, in batches: each pixel's mean and the variance of a batch. */
+/* Splats at positions that are uniform in and around the crop, in batches: each pixel's mean and the variance of a
+ * batch. */
 static void uniform_render(const FilterSettings *s, uint reconstruction, double *mean, double *variance, double *left)
 {
     LightFixture f;

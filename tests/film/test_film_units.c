@@ -1,5 +1,5 @@
-/* Single contributions: their rounding to units of the film, the largest and smallest, the crop; and which films there can
- * be. */
+/* Single contributions: their rounding to units of the film, the largest and smallest, the crop; and which films there
+ * can be. */
 #include "film/test_film.h"
 
 /* Ties round away from zero; the default quantum is 2^-30. */

@@ -1,5 +1,5 @@
-/* Films in one buffer of words (film/film_words.h): splats divided among several, whose words are added up, give the film
- * that gets all splats. */
+/* Films in one buffer of words (film/film_words.h): splats divided among several, whose words are added up, give the
+ * film that gets all splats. */
 #include "film/test_film.h"
 
 #include "camera/film_sum.h"

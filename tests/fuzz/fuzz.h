@@ -1,5 +1,5 @@
-/* Interface of the libFuzzer targets beside it (make fuzz). Linked with fuzz_replay.c they are programs that run the inputs of
- * tests/corpus (make check) or of the files and folders given. */
+/* Interface of the libFuzzer targets beside it (make fuzz). Linked with fuzz_replay.c they are programs that run the
+ * inputs of tests/corpus (make check) or of the files and folders given. */
 #ifndef TWINLIGHT_TESTS_FUZZ_FUZZ_H
 #define TWINLIGHT_TESTS_FUZZ_FUZZ_H
 

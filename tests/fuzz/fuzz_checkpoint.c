@@ -1,7 +1,7 @@
-/* Checkpoints with wrong values and a right checksum: a small rendering is resumed, or begun with a pilot, and goes on for two
- * generations of mmlt or some passes of the others. The first byte of an input says of which rendering (CASES); each 13 bytes
- * that follow replace a value (Change) of its checkpoint, which the program itself has made, so that inputs outlive changes of
- * the format. */
+/* Checkpoints with wrong values and a right checksum: a small rendering is resumed, or begun with a pilot, and goes on
+ * for two generations of mmlt or some passes of the others. The first byte of an input says of which rendering (CASES);
+ * each 13 bytes that follow replace a value (Change) of its checkpoint, which the program itself has made, so that
+ * inputs outlive changes of the format. */
 #include "fuzz/fuzz.h"
 #include "fuzz/fuzz_file.h"
 
@@ -30,8 +30,8 @@ typedef struct FuzzCase {
 
 #define CHAINS .chains = 8, .steps = 8
 
-/* After 16 passes of mmlt five generations are complete, and the next renews its importance and visits; after 21 there are
- * seven, and it does not. */
+/* After 16 passes of mmlt five generations are complete, and the next renews its importance and visits; after 21 there
+ * are seven, and it does not. */
 static const FuzzCase CASES[] = {
     {integrator_mmlt, LAYERS_AOV, {CHAINS}, 0.0, false, 16, 6},
     {integrator_mmlt, LAYERS_ALL, {CHAINS}, 1e-4, false, 21, 6},
@@ -44,8 +44,8 @@ static const FuzzCase CASES[] = {
 };
 #define CASE_COUNT (sizeof CASES / sizeof CASES[0])
 
-/* A floor, a wall of metal and a ball of frosted glass, lit by a lamp and a point light. Without smooth surfaces, so that any number
- * of photons takes no time. */
+/* A floor, a wall of metal and a ball of frosted glass, lit by a lamp and a point light. Without smooth surfaces, so
+ * that any number of photons takes no time. */
 static const char SCENE[] =
     "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6\n"
     "LookAt 0 1 -4  0 1 0  0 1 0\n"

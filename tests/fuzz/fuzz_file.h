@@ -7,7 +7,8 @@
 /* Its path, in TMPDIR or /tmp. The file is made at the first call, and removed when the process exits. */
 char *fuzz_file(void);
 
-/* Replaces its contents by these bytes, or by one frame of Zstandard that holds the head (which may be empty) and the bytes. */
+/* Replaces its contents by these bytes, or by one frame of Zstandard that holds the head (which may be empty) and the
+ * bytes. */
 void fuzz_file_write(const void *data, size_t size);
 void fuzz_file_compress(const ArchiveMemory *head, const void *data, size_t size);
 

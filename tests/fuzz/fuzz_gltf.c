@@ -1,5 +1,5 @@
-/* Arbitrary bytes as a glTF file or, if they do not begin with 'g', as its JSON after the first byte, in a .glb whose binary
- * chunk is a square with normals, texture coordinates and indices, and an image. */
+/* Arbitrary bytes as a glTF file or, if they do not begin with 'g', as its JSON after the first byte, in a .glb whose
+ * binary chunk is a square with normals, texture coordinates and indices, and an image. */
 #include "fuzz/fuzz.h"
 #include "fuzz/fuzz_file.h"
 

@@ -1,5 +1,5 @@
-/* Arbitrary bytes as a part for twinlight merge. The first byte says of what: of the file, of what it holds once decompressed, or
- * (0) of what follows the version in that, so that inputs outlive a change of the version. */
+/* Arbitrary bytes as a part for twinlight merge. The first byte says of what: of the file, of what it holds once
+ * decompressed, or (0) of what follows the version in that, so that inputs outlive a change of the version. */
 #include "fuzz/fuzz.h"
 #include "fuzz/fuzz_file.h"
 

@@ -142,7 +142,8 @@ START_TEST(test_cylinder_part)
 }
 END_TEST
 
-/* A ray that leaves a cylinder outward never hits it again; inward, it hits the opposite side if that is long enough. */
+/* A ray that leaves a cylinder outward never hits it again; inward, it hits the opposite side if that is long
+ * enough. */
 static void self_check(float scale, Vec3 shift, bool stretched, uint seed)
 {
     TestRandom random = {.seed = seed};

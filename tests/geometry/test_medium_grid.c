@@ -306,7 +306,8 @@ END_TEST
 
 /* ---- points ------------------------------------------------------------------------------------------------------ */
 
-/* Factors are from 0 to 1, and each of the three coordinates is off by up to one and a half roundings of tolerance_of. */
+/* Factors are from 0 to 1, and each of the three coordinates is off by up to one and a half roundings of
+ * tolerance_of. */
 START_TEST(test_points)
 {
     Case *c = case_make(_i);

@@ -43,8 +43,8 @@ TCase *gltf_case(const char *name);
 #define GLTF_LIGHT "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\"}]}}"
 #define GLTF_LIGHT_NODE "{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}"
 
-/* Writes NAME.glb: the members of the JSON's root but asset, accessors, buffers and bufferViews, which are added. Returns its
- * path, in one of a few buffers used in rotation. */
+/* Writes NAME.glb: the members of the JSON's root but asset, accessors, buffers and bufferViews, which are added.
+ * Returns its path, in one of a few buffers used in rotation. */
 const char *gltf_write(const char *name, const char *members);
 
 /* NAME in the tests' scratch folder, in one of a few buffers used in rotation. */

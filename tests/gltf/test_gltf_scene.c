@@ -109,7 +109,8 @@ END_TEST
 START_TEST(nodes_are_placed)
 {
     Scene scene;
-    /* Scaled by 2, turned by 90 degrees about z, moved by (1, 2, 3); then by (10, 0, 0) as the child of another node. */
+    /* Scaled by 2, turned by 90 degrees about z, moved by (1, 2, 3); then by (10, 0, 0) as the child of another
+     * node. */
     gltf_scene("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":3}]}],"
                "\"scene\":0,\"scenes\":[{\"nodes\":[1,2]}],\"nodes\":[{\"mesh\":0,\"translation\":[1,2,3],"
                "\"rotation\":[0,0,0.70710678,0.70710678],\"scale\":[2,2,2]},"

@@ -129,8 +129,8 @@ static Cylinder cylinder_make(void)
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"JOINTS_0\":3,\"WEIGHTS_0\":4},"       \
     "\"indices\":2}]}]"
 
-/* The lower bone stays and the upper one, which begins at height 1, is turned by 90 degrees about z and made `wide` times
- * as wide along z; all is moved by (3, 0, 0). The mesh's own node is far away, which does not matter. */
+/* The lower bone stays and the upper one, which begins at height 1, is turned by 90 degrees about z and made `wide`
+ * times as wide along z; all is moved by (3, 0, 0). The mesh's own node is far away, which does not matter. */
 static void bent_check(const Scene *scene, const Cylinder *cylinder, double wide)
 {
     for (int i = 0; i < VERTICES; ++i) {

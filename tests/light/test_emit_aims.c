@@ -1,5 +1,5 @@
-/* The aims of light subpaths: which spheres are chosen for a scene, how many rays go through each, and that the densities
- * are what later evaluations find. tests/light/test_emit_power.c has what the rays carry. */
+/* The aims of light subpaths: which spheres are chosen for a scene, how many rays go through each, and that the
+ * densities are what later evaluations find. tests/light/test_emit_power.c has what the rays carry. */
 #include "light/aim.h"
 #include "light/test_emit.h"
 #include "scene/aim_setup.h"
@@ -75,7 +75,8 @@ START_TEST(test_none)
 }
 END_TEST
 
-/* Every smooth ball is in an aim, none is around all, and a small one that is far from the others has one of its own. */
+/* Every smooth ball is in an aim, none is around all, and a small one that is far from the others has one of its
+ * own. */
 START_TEST(test_groups)
 {
     LightFixture f;

@@ -1,5 +1,5 @@
-/* Infinite lights with a portal: the window that a point sees, densities against quadrature over the portal, and rays that
- * leave it. */
+/* Infinite lights with a portal: the window that a point sees, densities against quadrature over the portal, and rays
+ * that leave it. */
 #include "light/aim.h"
 #include "light/test_light.h"
 #include "scene/portal_setup.h"

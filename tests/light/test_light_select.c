@@ -3,7 +3,8 @@
 #include "light/test_light.h"
 #include "support/light_fixture.h"
 
-/* The powers of three lights at infinity, divided anew: a quarter by power, the rest by power over the root of the solid angle. */
+/* The powers of three lights at infinity, divided anew: a quarter by power, the rest by power over the root of the
+ * solid angle. */
 static void divide_expected(double *powers, const double *solid_angles)
 {
     double all = 0.0, concentrated = 0.0;
@@ -15,8 +16,8 @@ static void divide_expected(double *powers, const double *solid_angles)
         powers[i] = 0.25 * powers[i] + 0.75 * all * (powers[i] / sqrt(solid_angles[i])) / concentrated;
 }
 
-/* Lights are chosen by power, those at infinity among themselves also by solid angle; with the far ones bright, those together
- * as often as all others. */
+/* Lights are chosen by power, those at infinity among themselves also by solid angle; with the far ones bright, those
+ * together as often as all others. */
 START_TEST(test_powers)
 {
     const float bright = _i == 0 ? 1.0f : 0.1f;
@@ -79,8 +80,8 @@ START_TEST(test_powers)
 }
 END_TEST
 
-/* A sky alone, and beside a light of a fifth of its power: a distant one, the image of a sun, and an equirectangular image
- * whose light comes from 45 degrees around one pole. */
+/* A sky alone, and beside a light of a fifth of its power: a distant one, the image of a sun, and an equirectangular
+ * image whose light comes from 45 degrees around one pole. */
 START_TEST(test_sun_and_sky)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

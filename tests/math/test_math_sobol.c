@@ -142,8 +142,8 @@ START_TEST(test_convergence)
 END_TEST
 
 /* Sets with other seeds are padded: over scramblings, the products of their numbers at the same sample average to the
- * product of the averages. Samples 2 k and 2 k + 1 are in opposite halves of both, so that the variance may be up to twice
- * that of independent numbers. */
+ * product of the averages. Samples 2 k and 2 k + 1 are in opposite halves of both, so that the variance may be up to
+ * twice that of independent numbers. */
 START_TEST(test_padded)
 {
     enum { TRIALS = 4000, COUNT = 16 };

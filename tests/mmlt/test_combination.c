@@ -57,8 +57,8 @@ static void estimator_set(Estimators *estimators, int s, double samples, double 
     }
 }
 
-/* Sets the rare light of a pixel, at 4 steps and 2 samples of path tracing per pixel: as chains and as path tracing find
- * it. */
+/* Sets the rare light of a pixel, at 4 steps and 2 samples of path tracing per pixel: as chains and as path tracing
+ * find it. */
 static void rare_set(Estimators *estimators, size_t pixel, double by_chains, double by_paths)
 {
     Film *chains = &estimators->films[ESTIMATOR_CHAINS], *paths = &estimators->films[ESTIMATOR_PATHS];
@@ -96,9 +96,9 @@ static double generation(Estimators *estimators)
 }
 
 /* Path tracing whose samples cancel each other's errors over the generations of a replica (_i 1): the replicas' means
- * differ less than their generations say, and so path tracing gets most of the weight. The same if they do so over those of
- * both, which are one sequence (_i 2): its mean changes less. If all samples are independent (_i 0, and 3 for one sequence),
- * nothing changes: test_weights. */
+ * differ less than their generations say, and so path tracing gets most of the weight. The same if they do so over
+ * those of both, which are one sequence (_i 2): its mean changes less. If all samples are independent (_i 0, and 3 for
+ * one sequence), nothing changes: test_weights. */
 START_TEST(test_stratified)
 {
     Estimators replicas[2];
@@ -126,8 +126,8 @@ START_TEST(test_stratified)
     double weight = replicas[0].combination.weight[ESTIMATOR_PATHS];
     printf("stratified %d: weight of path tracing %.3f, exponents %.3f and %.3f\n", _i, weight,
            replicas[0].combination.exponents[0], replicas[1].combination.exponents[0]);
-    /* After an odd number of generations of 2 samples the last one's error is left: variance 8 / samples^2 in units of a
-     * sample's, which is 4 / samples^1.83 at 60 of them; after an even number there is none. */
+    /* After an odd number of generations of 2 samples the last one's error is left: variance 8 / samples^2 in units of
+     * a sample's, which is 4 / samples^1.83 at 60 of them; after an even number there is none. */
     const double *exponent = replicas[0].combination.exponents;
     if (_i == 2) {
         ck_assert_double_eq_tol(exponent[0], 1.8, 0.2);
@@ -147,8 +147,8 @@ START_TEST(test_stratified)
 }
 END_TEST
 
-/* Chains that come to a tile less than once in all generations, and have found excess in only one so far: the others have no
- * less variance (_i 0). With many visits the tile is an exception (_i 1). */
+/* Chains that come to a tile less than once in all generations, and have found excess in only one so far: the others
+ * have no less variance (_i 0). With many visits the tile is an exception (_i 1). */
 START_TEST(test_visits_few)
 {
     Estimators estimators;
@@ -174,9 +174,9 @@ START_TEST(test_visits_few)
 }
 END_TEST
 
-/* Chains whose error is the same in all pixels of a tile: the variance of the sum over a patch, by which chains are weighted
- * against the pool, is 16 times that of independent pixels. Against path tracing that of the tile counts, which is four times
- * the sum of its patches'. */
+/* Chains whose error is the same in all pixels of a tile: the variance of the sum over a patch, by which chains are
+ * weighted against the pool, is 16 times that of independent pixels. Against path tracing that of the tile counts,
+ * which is four times the sum of its patches'. */
 START_TEST(test_correlated)
 {
     Estimators estimators;
@@ -299,8 +299,8 @@ START_TEST(test_alone)
 }
 END_TEST
 
-/* The difference of what path tracing finds alone, rare light included, from the image, over the generations in which it is
- * kept. */
+/* The difference of what path tracing finds alone, rare light included, from the image, over the generations in which
+ * it is kept. */
 START_TEST(test_paths_kept)
 {
     Estimators estimators;
@@ -400,8 +400,8 @@ START_TEST(test_excess)
 }
 END_TEST
 
-/* Rare light that chains and path tracing both find: each counts by its variance, the chains' by twice that (_i 0), also where path tracing has not
- * found it, whose variance is then that of finding it once (_i 1). */
+/* Rare light that chains and path tracing both find: each counts by its variance, the chains' by twice that (_i 0),
+ * also where path tracing has not found it, whose variance is then that of finding it once (_i 1). */
 START_TEST(test_rare)
 {
     Estimators estimators;
@@ -426,8 +426,8 @@ START_TEST(test_rare)
         ck_assert_double_lt(rare, 0.02);
     else
         ck_assert_double_eq_tol(rare, 0.5 / (0.5 + 1.0), 0.02);
-    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light of the variance (1 - rare)^2 / 4 + rare^2, of the
-     * covariance with the chains' .8 times (1 - rare) / 4. */
+    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light of the variance (1 - rare)^2 / 4 + rare^2,
+     * of the covariance with the chains' .8 times (1 - rare) / 4. */
     double chains = 1.8, own = 0.005 + (_i == 1 ? 0.25 : 2.0 / 9.0), both = _i == 1 ? 0.2 : 0.2 * 2.0 / 3.0;
     ck_assert_double_eq_tol(estimators.combination.weight[ESTIMATOR_PATHS],
                             (chains - both) / (chains + own - 2.0 * both), 0.01);
@@ -435,8 +435,8 @@ START_TEST(test_rare)
 }
 END_TEST
 
-/* Path tracing's own rare light has many fireflies in a few tiles and none elsewhere, where its stated variance is small:
- * it has no weight there either. */
+/* Path tracing's own rare light has many fireflies in a few tiles and none elsewhere, where its stated variance is
+ * small: it has no weight there either. */
 START_TEST(test_fireflies)
 {
     Estimators estimators;
@@ -459,10 +459,10 @@ START_TEST(test_fireflies)
 }
 END_TEST
 
-/* Path tracing finds none of the rare light, which is half of all (_i 0), all of it (1), all but 3 % (2) or all but 1.5 % (3), and
- * states hardly any variance. No tile tells so: the chains' errors there are large. In the whole image they are small (_i 0, 1
- * and 3), or alike in all tiles (2), so that the 3 % are not significant; and the 1.5 % of half of the light do not matter. Where
- * it misses light, its own has no weight, and it is never alone. */
+/* Path tracing finds none of the rare light, which is half of all (_i 0), all of it (1), all but 3 % (2) or all but 1.5
+ * % (3), and states hardly any variance. No tile tells so: the chains' errors there are large. In the whole image they
+ * are small (_i 0, 1 and 3), or alike in all tiles (2), so that the 3 % are not significant; and the 1.5 % of half of
+ * the light do not matter. Where it misses light, its own has no weight, and it is never alone. */
 START_TEST(test_rare_missed)
 {
     static const struct {

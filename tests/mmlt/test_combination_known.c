@@ -66,11 +66,12 @@ static void known_destroy(Known *known)
     combination_destroy(&known->combination);
 }
 
-/* ---- weights ------------------------------------------------------------------------------------------------------ */
+/* ---- weights
+ * ------------------------------------------------------------------------------------------------------ */
 
-/* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in the
- * tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are correlated.
- * None where light may be hidden from path tracing. factor: of the chains' variance in `all`. */
+/* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in
+ * the tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are
+ * correlated. None where light may be hidden from path tracing. factor: of the chains' variance in `all`. */
 static double rare_weight(const Combination *all, const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
                           double factor)
 {
@@ -82,7 +83,8 @@ static double rare_weight(const Combination *all, const CombinationTile *tile, c
                 all_chains / (all_chains + all->rare_paths / samples[ESTIMATOR_PATHS]));
 }
 
-/* A tile, samples of each estimator, the weight of path tracing's own rare light, and the correlation of the chains' errors. */
+/* A tile, samples of each estimator, the weight of path tracing's own rare light, and the correlation of the chains'
+ * errors. */
 typedef struct TileTerms {
     const CombinationTile *tile;
     const double *samples;
@@ -258,8 +260,8 @@ static double picture_error(const Combination *combination, const double samples
     return sum;
 }
 
-/* Among all divisions of the time into twentieths, and one that leaves chains and pool half of one each, the plan has the least
- * error. */
+/* Among all divisions of the time into twentieths, and one that leaves chains and pool half of one each, the plan has
+ * the least error. */
 START_TEST(test_plan_known)
 {
     Known known;
@@ -335,8 +337,8 @@ START_TEST(test_alone_known)
 }
 END_TEST
 
-/* Once a plan is known, a generation counts by its work times the error of the plan's division over that of its own, direct
- * light left out: also one without path tracing, which may count twice at most. */
+/* Once a plan is known, a generation counts by its work times the error of the plan's division over that of its own,
+ * direct light left out: also one without path tracing, which may count twice at most. */
 START_TEST(test_worth_known)
 {
     Known teacher, pupil, others[2];
@@ -406,7 +408,8 @@ START_TEST(test_rates_adopted)
 }
 END_TEST
 
-/* ---- importance and visits ---------------------------------------------------------------------------------------- */
+/* ---- importance and visits
+ * ---------------------------------------------------------------------------------------- */
 
 static uint cell_of(size_t x, size_t y)
 {
@@ -499,8 +502,8 @@ START_TEST(test_visits_known)
 }
 END_TEST
 
-/* Variances of very bright light are infinite, and what follows from them may be NaN; weights are weights all the same, and
- * importances are numbers. */
+/* Variances of very bright light are infinite, and what follows from them may be NaN; weights are weights all the same,
+ * and importances are numbers. */
 START_TEST(test_wild_numbers)
 {
     static const double WILD[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300, 0.0};

@@ -298,10 +298,10 @@ END_TEST
 /* Samples of the reference's groups. */
 #define SLOPE_REFERENCE 6000
 
-/* The mean square error against a reference by bidirectional path tracing falls as 1 / work, without a floor. For chains alone over two
- * decades; combined, it falls faster as long as weights and the pools' visits are learnt (glass, from 3000 samples to
- * 30,000: slope -1.19; from 10,000 to 100,000 -1.13 before light subpaths were aimed, -0.92 since), so that its slope
- * has an upper bound alone. */
+/* The mean square error against a reference by bidirectional path tracing falls as 1 / work, without a floor. For
+ * chains alone over two decades; combined, it falls faster as long as weights and the pools' visits are learnt (glass,
+ * from 3000 samples to 30,000: slope -1.19; from 10,000 to 100,000 -1.13 before light subpaths were aimed, -0.92
+ * since), so that its slope has an upper bound alone. */
 START_TEST(test_slope)
 {
     enum { BUDGETS = 3 };
@@ -410,7 +410,8 @@ START_TEST(test_hides)
 }
 END_TEST
 
-/* Light that path tracing cannot find is not missed: what it has not shown of rare light is no sign that there is none. */
+/* Light that path tracing cannot find is not missed: what it has not shown of rare light is no sign that there is
+ * none. */
 START_TEST(test_hidden)
 {
     enum { SEEDS = 6, SIDE = 32 };

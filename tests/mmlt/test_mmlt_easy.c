@@ -1,5 +1,5 @@
-/* Where light is easy, path tracing goes on alone, and its samples are complete: no light of theirs is combined with that of
- * chains. */
+/* Where light is easy, path tracing goes on alone, and its samples are complete: no light of theirs is combined with
+ * that of chains. */
 #include "support/bidirectional.h"
 
 #include "mmlt/tuning.h"
@@ -40,7 +40,8 @@ START_TEST(test_complete)
 }
 END_TEST
 
-/* No samples are complete in pictures whose parts or halves are told apart; those beside variables of the first hit are. */
+/* No samples are complete in pictures whose parts or halves are told apart; those beside variables of the first hit
+ * are. */
 START_TEST(test_layers)
 {
     static const unsigned LAYERS[] = {LAYERS_AOV, LAYER_BIT(LAYER_INDIRECT), LAYER_BIT(LAYER_BY_DEPTH),

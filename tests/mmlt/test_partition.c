@@ -16,10 +16,10 @@
 
 /* Relative difference of what a path carries in path tracing and as the chain has it. s < 2: both make the same
  * vertices by the same numbers, from film positions that differ by rounding, which curved and bumpy surfaces multiply.
- * Else path tracing goes from the camera to vertices that the light subpath has made, and its directions, by differences
- * of rounded positions, are off by 1e-7 of the scene over the length of the segment; the densities of glossy lobes and of
- * short or grazing segments multiply that. With ten times the samples, seven of the scenes have a path that exceeds these
- * bounds, off by up to 4.7 %; they are for the samples below. */
+ * Else path tracing goes from the camera to vertices that the light subpath has made, and its directions, by
+ * differences of rounded positions, are off by 1e-7 of the scene over the length of the segment; the densities of
+ * glossy lobes and of short or grazing segments multiply that. With ten times the samples, seven of the scenes have a
+ * path that exceeds these bounds, off by up to 4.7 %; they are for the samples below. */
 #define SAME_ERROR 5e-4
 #define BACK_ERROR 3e-3
 

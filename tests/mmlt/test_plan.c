@@ -22,8 +22,8 @@ static uint64_t work_of(const Plan *plan)
     return (uint64_t)estimators_work(samples);
 }
 
-/* The work of generation `index`, whose path tracing is whole samples of every pixel, of which *owed are due; sets *owed to
- * what remains due. */
+/* The work of generation `index`, whose path tracing is whole samples of every pixel, of which *owed are due; sets
+ * *owed to what remains due. */
 static uint64_t rounded_work(const Plan *plan, uint index, double *owed)
 {
     double wanted = *owed + plan_paths_samples(plan, plan->chains), whole = fmax(rint(wanted), 0.0);
@@ -36,9 +36,9 @@ static uint64_t rounded_work(const Plan *plan, uint index, double *owed)
     return (uint64_t)estimators_work(samples);
 }
 
-/* Generations begin small, come in pairs of one size (the last pair but for what its first generation did too much), are
- * at most as large as chains are allowed and as a fraction of the work so far, and end where --samples says, whatever the
- * clock says. */
+/* Generations begin small, come in pairs of one size (the last pair but for what its first generation did too much),
+ * are at most as large as chains are allowed and as a fraction of the work so far, and end where --samples says,
+ * whatever the clock says. */
 START_TEST(test_sizes)
 {
     const ChainOptions options = {.chains = PLANS[_i].chains, .steps = STEPS_DEFAULT, .pool = PLANS[_i].pool};
@@ -148,8 +148,8 @@ START_TEST(test_alone_fit)
 }
 END_TEST
 
-/* A pair of generations is shortened to end where it is wanted, with chains or, in whole samples, of path tracing alone; it
- * never grows, and is never empty. */
+/* A pair of generations is shortened to end where it is wanted, with chains or, in whole samples, of path tracing
+ * alone; it never grows, and is never empty. */
 START_TEST(test_shorten)
 {
     const ChainOptions options = {.chains = CHAINS_DEFAULT, .steps = STEPS_DEFAULT, .chains_only = true};
@@ -304,8 +304,9 @@ START_TEST(test_published)
 }
 END_TEST
 
-/* The first generations of both replicas have a sample of every pixel each, though a tenth is wanted; those that follow have as
- * many as are wanted, to half a sample, and make up for none of these. Numbers of samples are one sequence or two. */
+/* The first generations of both replicas have a sample of every pixel each, though a tenth is wanted; those that follow
+ * have as many as are wanted, to half a sample, and make up for none of these. Numbers of samples are one sequence or
+ * two. */
 START_TEST(test_paths)
 {
     const RenderOptions options = {.first_sample = 7};

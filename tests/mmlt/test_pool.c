@@ -1,5 +1,5 @@
-/* Which pixels get pool samples with a light subpath, and which samples path tracing takes, over many generations, on a fake
- * backend that only records. */
+/* Which pixels get pool samples with a light subpath, and which samples path tracing takes, over many generations, on a
+ * fake backend that only records. */
 #include "support/test_util.h"
 
 #include "base/sample_statistics.h"

@@ -56,8 +56,8 @@ static void pictures_agree(const char *name, const char *text, int depth, unsign
     "\"float focaldistance\" 5\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n" BD_LAMP BD_GREY BD_FLOOR   \
         BD_BALL
 
-/* Border pixels get as much as inner ones; paths of two segments, by light tracing alone. Half of the light paths are the
- * sky's: with few, its splats are too rare for Student's test. */
+/* Border pixels get as much as inner ones; paths of two segments, by light tracing alone. Half of the light paths are
+ * the sky's: with few, its splats are too rare for Student's test. */
 START_TEST(test_filters)
 {
     static const unsigned LIGHT_TRACING[2] = {2, 1};

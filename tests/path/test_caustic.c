@@ -31,7 +31,8 @@
     "AttributeEnd\n"
 #define COATED "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.8 0.5 0.3 ] \"float roughness\" 0\n"
 
-/* Lamps of every kind over smooth surfaces of every kind. Under water the caustic has as many segments as a path may. */
+/* Lamps of every kind over smooth surfaces of every kind. Under water the caustic has as many segments as a path
+ * may. */
 static const BidirectionalScene SCENES[] = {
     {"quad lamp", BD_ROOM BEADS, SUPPORT_SUM_ONLY, 6, 2},
     {"ball lamp", BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.6", "12") BEADS, SUPPORT_SUM_ONLY, 6, 2},
@@ -82,7 +83,8 @@ START_TEST(test_same)
 }
 END_TEST
 
-/* ---- light that nothing else finds -------------------------------------------------------------------------------- */
+/* ---- light that nothing else finds
+ * -------------------------------------------------------------------------------- */
 
 /* Glass whose index hardly differs from 1 bends no light, so a floor under a pane of it, seen through the pane, is as
  * bright as without it; but no light can be connected with through it. */
@@ -171,7 +173,8 @@ START_TEST(test_unseen)
 }
 END_TEST
 
-/* ---- whether photons are worth it ---------------------------------------------------------------------------------- */
+/* ---- whether photons are worth it
+ * ---------------------------------------------------------------------------------- */
 
 /* A bead far away whose caustic only its own image shows. */
 #define FAR_BEAD SMOOTH_GLASS "AttributeBegin Translate -3 -0.9 3 Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n"
@@ -228,7 +231,8 @@ START_TEST(test_receivers)
 }
 END_TEST
 
-/* What photons and chance show of a path adds up to it, and photons show nothing where they are no better than chance. */
+/* What photons and chance show of a path adds up to it, and photons show nothing where they are no better than
+ * chance. */
 START_TEST(test_rest)
 {
     ck_assert(caustic_rest_of(0.3f, 0.0f) == 1.0f && caustic_rest_of(0.3f, 0.3f) == 1.0f);
@@ -329,8 +333,8 @@ START_TEST(test_found)
 }
 END_TEST
 
-/* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every bead
- * by itself. */
+/* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every
+ * bead by itself. */
 START_TEST(test_found_among_many)
 {
     enum { COUNT = 64 };

@@ -137,8 +137,8 @@ START_TEST(coated_conductor)
 }
 END_TEST
 
-/* A scattering coat over a conductor becomes a mix of two coats with the same interface, of which that over the conductor
- * is thinner; relief belongs to both. */
+/* A scattering coat over a conductor becomes a mix of two coats with the same interface, of which that over the
+ * conductor is thinner; relief belongs to both. */
 START_TEST(scattering_coats)
 {
     Scene scene;

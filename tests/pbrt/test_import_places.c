@@ -137,8 +137,8 @@ START_TEST(open_surfaces)
 }
 END_TEST
 
-/* A room whose walls separate no media and whose only opening leads from fog into the open: what is behind walls does not
- * count. */
+/* A room whose walls separate no media and whose only opening leads from fog into the open: what is behind walls does
+ * not count. */
 START_TEST(walls)
 {
     static const char ROOM[] =

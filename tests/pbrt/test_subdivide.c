@@ -167,8 +167,8 @@ static double triangle_area(const float *positions, const uint *t, int axis)
                   ((double)b[v] - (double)a[v]) * ((double)c[u] - (double)a[u]));
 }
 
-/* Triangulates corners 0 ... count - 1; every triangle must have the orientation of the polygon, and their areas add up to
- * its area: together, they cover it once. */
+/* Triangulates corners 0 ... count - 1; every triangle must have the orientation of the polygon, and their areas add up
+ * to its area: together, they cover it once. */
 static void polygon_check(const float *positions, size_t count, int axis, double area)
 {
     uint corner[64] = {0}, triangles[3 * 64], scratch[3 * 64];

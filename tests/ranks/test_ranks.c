@@ -1,5 +1,5 @@
-/* Several ranks, as far as it can be tested without MPI: what the launcher says, greetings, the part of a pass on a thread
- * of its own. The rest: tests/command/test_mpi.sh. */
+/* Several ranks, as far as it can be tested without MPI: what the launcher says, greetings, the part of a pass on a
+ * thread of its own. The rest: tests/command/test_mpi.sh. */
 #include "support/test_util.h"
 
 #include "base/exit_status.h"
@@ -151,7 +151,8 @@ START_TEST(test_slice)
 }
 END_TEST
 
-/* ---- what ranks have ------------------------------------------------------------------------------------------------ */
+/* ---- what ranks have
+ * ------------------------------------------------------------------------------------------------ */
 
 /* Lists of steps and maps of photons are sent once each, and lists of as many steps are told apart. */
 START_TEST(test_pass_order)

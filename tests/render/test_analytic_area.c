@@ -12,7 +12,8 @@ static void check_light(const char *name, const char *light, double irradiance)
     analytic_check(name, got, irradiance / M_PI, ANALYTIC_TOLERANCE);
 }
 
-/* ---- disks --------------------------------------------------------------------------------------------------------- */
+/* ---- disks
+ * --------------------------------------------------------------------------------------------------------- */
 
 /* A parallel disk off the axis: Howell's catalogue of view factors, B-13. */
 START_TEST(test_parallel_disk)
@@ -62,7 +63,8 @@ START_TEST(test_tilted_disks)
 }
 END_TEST
 
-/* ---- polygons ------------------------------------------------------------------------------------------------------ */
+/* ---- polygons
+ * ------------------------------------------------------------------------------------------------------ */
 
 START_TEST(test_rectangles)
 {
@@ -125,7 +127,8 @@ START_TEST(test_bent_patch)
 }
 END_TEST
 
-/* ---- spheres ------------------------------------------------------------------------------------------------------- */
+/* ---- spheres
+ * ------------------------------------------------------------------------------------------------------- */
 
 typedef struct Ball {
     double z_min, z_max, phi_max; /* of the unit sphere */

@@ -1,5 +1,5 @@
-/* A rendering that is stopped at any of its passes and resumed, again and again, ends with the same sums as one that runs
- * through. */
+/* A rendering that is stopped at any of its passes and resumed, again and again, ends with the same sums as one that
+ * runs through. */
 #include "support/render_fixture.h"
 #include "support/test_files.h"
 #include "support/test_util.h"
@@ -169,8 +169,8 @@ static void quiet(const char *line, void *context)
     (void)context;
 }
 
-/* After which of its passes the r-th process stops: ever later ones, then after about a generation of MMLT. Photons are traced
- * anew by each process, in passes that do not count as progress. */
+/* After which of its passes the r-th process stops: ever later ones, then after about a generation of MMLT. Photons are
+ * traced anew by each process, in passes that do not count as progress. */
 static int passes_of(const CheckpointCase *of, int process)
 {
     bool generations = of->integrator == integrator_mmlt && of->photons == 0;

@@ -27,8 +27,8 @@ START_TEST(test_looks)
 }
 END_TEST
 
-/* A goal is reached when the estimate and its standard error are below it, and the forecast is that of an error that falls with
- * the square root of the work. */
+/* A goal is reached when the estimate and its standard error are below it, and the forecast is that of an error that
+ * falls with the square root of the work. */
 START_TEST(test_reached)
 {
     const RenderOptions options = {.error = {.goal = 0.1}};
@@ -118,8 +118,8 @@ static double error_of(const RenderedImage *image, const ErrorGoal *goal)
     return error_true(&rendered, goal);
 }
 
-/* The error by a reference is what was promised, on average over seeds: it may be less by what the last look is late, and by the
- * margin of a standard error. */
+/* The error by a reference is what was promised, on average over seeds: it may be less by what the last look is late,
+ * and by the margin of a standard error. */
 START_TEST(test_promise)
 {
     RenderedImage image;
@@ -164,7 +164,8 @@ static const struct {
     {"glossy", integrator_mmlt, 0.3, 0.0022, 19},
     {"lamp", integrator_mmlt, 0.4, 0.0045, 19},
     {"relief", integrator_mmlt, 0.3, 0.012, 19},
-    /* One in five has a much smaller error than promised: it falls at once when bright pixels come to be among the worst. */
+    /* One in five has a much smaller error than promised: it falls at once when bright pixels come to be among the
+     * worst. */
     {"pool", integrator_mmlt, 0.2, 0.0092, 15},
 };
 
@@ -179,8 +180,8 @@ static double relative_error(const RenderedImage *image, PictureView reference, 
     return sqrt(fmax(metrics.rel_mse_trimmed - noise, 0.0));
 }
 
-/* The same over 20 seeds on scenes with references: all but one end with at most 1.25 times what was promised, and most with at
- * least 0.8. */
+/* The same over 20 seeds on scenes with references: all but one end with at most 1.25 times what was promised, and most
+ * with at least 0.8. */
 START_TEST(test_promise_of_scenes)
 {
     char path[2][512];
@@ -265,7 +266,8 @@ static void first_half_compare(const RenderSetup *setup, const Film *half)
     fixture_destroy(&image);
 }
 
-/* --samples ends a rendering that does not reach its goal, with as many samples as without a goal, odd numbers included. */
+/* --samples ends a rendering that does not reach its goal, with as many samples as without a goal, odd numbers
+ * included. */
 START_TEST(test_samples)
 {
     RenderLayers layers = {0};

@@ -121,8 +121,8 @@ double error_true(const NoisyPicture *made, const ErrorGoal *goal)
 
 #define PICTURES 60
 
-/* The mean of the estimates is the error itself, to a few percent, more where noise hides what the pixels' own values are;
- * estimates scatter as their standard errors say, or less. */
+/* The mean of the estimates is the error itself, to a few percent, more where noise hides what the pixels' own values
+ * are; estimates scatter as their standard errors say, or less. */
 START_TEST(test_estimate)
 {
     static NoisyPicture made;

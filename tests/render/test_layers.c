@@ -156,8 +156,8 @@ START_TEST(test_variables)
 }
 END_TEST
 
-/* Where a wall ends, alpha is the part of the pixel that it covers; an environment is everywhere. The distance is the mean of
- * the rays that meet the wall. */
+/* Where a wall ends, alpha is the part of the pixel that it covers; an environment is everywhere. The distance is the
+ * mean of the rays that meet the wall. */
 START_TEST(test_alpha)
 {
     RenderLayers layers = {.wanted = LAYER_BIT(LAYER_ALBEDO) | LAYER_BIT(LAYER_DEPTH) | LAYER_BIT(LAYER_ALPHA)};
@@ -214,8 +214,8 @@ START_TEST(test_direct_edge)
 }
 END_TEST
 
-/* The first picture that is saved is that of a sample per pixel of path tracing, before chains have run, and all of path
- * tracing's samples, these too, are in the last. */
+/* The first picture that is saved is that of a sample per pixel of path tracing, before chains have run, and all of
+ * path tracing's samples, these too, are in the last. */
 START_TEST(test_first)
 {
     RenderLayers layers = {.wanted = LAYERS_AOV};
@@ -272,8 +272,9 @@ START_TEST(test_halves)
 }
 END_TEST
 
-/* Halves are compared only if their errors are independent: their path tracing is then of two stratified sequences, and of one
- * if none are wanted, which is less noise. So layers of halves and of variance change the image of direct light; others do not. */
+/* Halves are compared only if their errors are independent: their path tracing is then of two stratified sequences, and
+ * of one if none are wanted, which is less noise. So layers of halves and of variance change the image of direct light;
+ * others do not. */
 START_TEST(test_sequences)
 {
     const Layer wanted[] = {LAYER_HALVES, LAYER_VARIANCE, LAYER_DIRECT, LAYER_ALBEDO};

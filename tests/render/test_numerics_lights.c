@@ -101,8 +101,8 @@ static void rare_text(char *text, size_t size, double probability)
 }
 
 /* A chain that has found the mirror can hardly leave it, since almost every step misses it. Generations limit its life,
- * so that the mean is right and no pixel keeps what a stuck chain has accumulated. Light subpaths are aimed at the mirror
- * (light/aim.h), however small it is. */
+ * so that the mean is right and no pixel keeps what a stuck chain has accumulated. Light subpaths are aimed at the
+ * mirror (light/aim.h), however small it is. */
 START_TEST(test_rare)
 {
     char text[2048], name[48];

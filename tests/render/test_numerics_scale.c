@@ -275,8 +275,8 @@ START_TEST(test_sun_scaled)
 }
 END_TEST
 
-/* The floor alone is enlarged: a part of the light subpaths is aimed at the ball, so nothing changes, the noise no more than
- * the mean. */
+/* The floor alone is enlarged: a part of the light subpaths is aimed at the ball, so nothing changes, the noise no more
+ * than the mean. */
 START_TEST(test_sun_wide)
 {
     static const double RADII[] = {4.0, 20.0, 400.0};

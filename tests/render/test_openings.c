@@ -143,9 +143,9 @@ static Vec3 random_direction(unsigned short state[3])
     return vec3_normalize(v);
 }
 
-/* Normals of walls in a frame, turned from the world's by 33 degrees (_i 0) or not at all (1), and as many of round things:
- * it is found again, the world's exactly. With nothing but a floor (2), that is perpendicular to an axis; without surfaces (3)
- * the frame is the world's. */
+/* Normals of walls in a frame, turned from the world's by 33 degrees (_i 0) or not at all (1), and as many of round
+ * things: it is found again, the world's exactly. With nothing but a floor (2), that is perpendicular to an axis;
+ * without surfaces (3) the frame is the world's. */
 START_TEST(test_frame)
 {
     const Vec3 axis = vec3_normalize(vec3(1.0f, 2.0f, 3.0f));
@@ -173,7 +173,8 @@ START_TEST(test_frame)
 }
 END_TEST
 
-/* ---- a room ------------------------------------------------------------------------------------------------------- */
+/* ---- a room
+ * ------------------------------------------------------------------------------------------------------- */
 
 static double relative_noise(const RenderedImage *a, const RenderedImage *b)
 {
@@ -229,8 +230,9 @@ static OpeningParams found(const char *text)
     return run.frame.openings;
 }
 
-/* In a room that is turned in the world, they are in its frame; in another, in the world's. Both lights have the window; light subpaths are divided by the light that they bring, which a brighter sun's is more
- * of, beside what they have anyway. */
+/* In a room that is turned in the world, they are in its frame; in another, in the world's. Both lights have the
+ * window; light subpaths are divided by the light that they bring, which a brighter sun's is more of, beside what they
+ * have anyway. */
 START_TEST(test_room_found)
 {
     static const Window window = {0, 2.0, {-0.4, 1.0}, {0.4, 1.8}};

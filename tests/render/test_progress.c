@@ -1,5 +1,5 @@
-/* What callbacks are told of a rendering under way: the time that is left, with the pass or generation under way, and whether
- * that is the last. */
+/* What callbacks are told of a rendering under way: the time that is left, with the pass or generation under way, and
+ * whether that is the last. */
 #include "support/render_fixture.h"
 #include "support/test_util.h"
 

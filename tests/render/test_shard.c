@@ -1,4 +1,5 @@
-/* Shards: their shares, seeds and blocks of samples; and adding what they have rendered: series of images, and parts. */
+/* Shards: their shares, seeds and blocks of samples; and adding what they have rendered: series of images, and
+ * parts. */
 #include "support/test_util.h"
 
 #include "film/pixel_series.h"

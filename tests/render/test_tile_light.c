@@ -71,8 +71,8 @@ START_TEST(test_noise)
 }
 END_TEST
 
-/* A bright path that one half has met on dark pixels makes neither these nor their neighbours brighter, whatever share of the
- * samples the half has. */
+/* A bright path that one half has met on dark pixels makes neither these nor their neighbours brighter, whatever share
+ * of the samples the half has. */
 START_TEST(test_bright_path)
 {
     const struct {

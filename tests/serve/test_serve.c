@@ -196,7 +196,8 @@ START_TEST(nobody_is_waited_for)
 }
 END_TEST
 
-/* What readers use counts as what a publication takes: the next one waits until both are a small part of the threads' time. */
+/* What readers use counts as what a publication takes: the next one waits until both are a small part of the threads'
+ * time. */
 START_TEST(readers_are_counted)
 {
     Scenery scenery;

@@ -1,5 +1,5 @@
-/* Clients of the page that hang, send or read slowly, or send too much: they keep neither the rendering nor other clients
- * waiting. */
+/* Clients of the page that hang, send or read slowly, or send too much: they keep neither the rendering nor other
+ * clients waiting. */
 #include "serve/served.h"
 #include "serve/test_serve.h"
 

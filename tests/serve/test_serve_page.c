@@ -263,8 +263,8 @@ START_TEST(hostile_requests)
 }
 END_TEST
 
-/* Connections on which half a request or no request comes, as many as there may be and more, and one whose client does not
- * read: the rendering ends when it should. */
+/* Connections on which half a request or no request comes, as many as there may be and more, and one whose client does
+ * not read: the rendering ends when it should. */
 START_TEST(hanging_clients)
 {
     enum { CLIENTS = 60 };

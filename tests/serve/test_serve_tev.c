@@ -1,5 +1,5 @@
-/* The program's exchange with tev: a server that reads packets as tev does, one that never reads, one that goes away, and
- * none. */
+/* The program's exchange with tev: a server that reads packets as tev does, one that never reads, one that goes away,
+ * and none. */
 #include "serve/test_serve.h"
 
 #include "support/test_files.h"
