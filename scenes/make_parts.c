@@ -36,8 +36,7 @@ enum { LATHE_SEGMENTS = 36, LATHE_STEPS = 2 };
 
 #define POINTS(array) array, (int)(sizeof array / sizeof *array)
 
-/* ---- the lathe
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- the lathe --------------------------------------------------------------------------------------------------- */
 
 /* Point i of the profile; beyond an end on the axis its mirror image, so that the tip is smooth, else a straight
  * way. */
@@ -86,8 +85,7 @@ static Vertex lathe_vertex(const void *shape, int i, int j)
                            lathe->v_repeat * j / (LATHE_STEPS * (lathe->last - lathe->first))}};
 }
 
-/* ---- the pane
- * ----------------------------------------------------------------------------------------------------- */
+/* ---- the pane ---------------------------------------------------------------------------------------------------- */
 
 enum { PANE_COLUMNS = 24, PANE_ROWS = 28 };
 static const double PANE_STEP = 0.025, PANE_THICKNESS = 0.004;
@@ -111,8 +109,7 @@ static Vertex pane_vertex(const void *shape, int i, int j)
     return (Vertex){.p = {x, y, z}, .n = {-slope_x / length, -slope_y / length, 1.0 / length}, .uv = {x, y}};
 }
 
-/* ---- rings
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- rings ------------------------------------------------------------------------------------------------------- */
 
 enum { RING_COLUMNS = 96, RING_ROWS = 32 };
 
@@ -134,8 +131,7 @@ static Vertex ring_vertex(const void *shape, int i, int j)
 
 static const Ring BAND = {0.01, 0.0008, 0.003}, TORUS = {0.022, 0.008, 0.008};
 
-/* ---- files
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 static void grid_header_write(const Grid *grid, FILE *file)
 {
@@ -195,8 +191,7 @@ static bool lathe_write(Lathe lathe, const char *folder, const char *name)
     return grid_write(&grid, folder, name);
 }
 
-/* ---- vessels: points (r, y) in metres
- * -------------------------------------------------------------------------------- */
+/* ---- vessels: points (r, y) in metres ---------------------------------------------------------------------------- */
 
 /* A jar with its lid and a knob, closed. */
 static const double JAR[][2] = {{0, 0},         {0.05, 0},      {0.066, 0.001}, {0.072, 0.006}, {0.1, 0.035},
@@ -257,8 +252,7 @@ static const double LEMON[][2] = {{0, 0},          {0.0045, 0.001}, {0.0085, 0.0
                                   {0.0235, 0.025}, {0.029, 0.042},  {0.0285, 0.055},  {0.0225, 0.069},
                                   {0.0125, 0.078}, {0.006, 0.0825}, {0, 0.084}};
 
-/* ---- hammered metal
- * --------------------------------------------------------------------------------------------------- */
+/* ---- hammered metal ---------------------------------------------------------------------------------------------- */
 
 enum { HAMMERED_SIDE = 192, HAMMERED_CELLS = 7 };
 
@@ -304,8 +298,7 @@ static bool hammered_write(const char *folder, Error *error)
     return png_write(path, rgb, HAMMERED_SIDE, HAMMERED_SIDE, 0.0f, error);
 }
 
-/* ---- the sun
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- the sun ----------------------------------------------------------------------------------------------------- */
 
 /* 0.5 degrees across are 2.5 texels of the equal-area octahedral map. */
 enum { SUN_SIDE = 1024, SUN_SAMPLES = 16 };

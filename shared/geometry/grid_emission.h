@@ -15,8 +15,7 @@
 #include "geometry/medium_grid.h"
 #include "math/elementary.h"
 
-/* ---- black bodies
- * ------------------------------------------------------------------------------------------------- */
+/* ---- black bodies ------------------------------------------------------------------------------------------------ */
 
 /* Radiance of black bodies whose spectrum has the maximum 1, as pbrt has it: a table in `lookup` of red, green and blue
  * at T = MIDDLE x / (1 - x) kelvin for x = 0, 1 / ROWS ... 1, interpolated linearly. */
@@ -32,8 +31,7 @@ SHARED_FUNCTION Vec3 blackbody_radiance(const SceneView *scene, uint table, floa
     return vec3((1.0f - t) * a[0] + t * a[3], (1.0f - t) * a[1] + t * a[4], (1.0f - t) * a[2] + t * a[5]);
 }
 
-/* ---- factors of emission
- * ------------------------------------------------------------------------------------------ */
+/* ---- factors of emission ----------------------------------------------------------------------------------------- */
 
 /* A ray in the coordinates of the emission's grid, by the distance from its origin in the world. */
 typedef struct EmissionRay {
@@ -89,8 +87,7 @@ SHARED_FUNCTION Vec3 emission_factor(const SceneView *scene, const EmissionRay *
     return vec3_mul(extinction, vec3_scale(radiance, words == 2u ? value.y : 1.0f));
 }
 
-/* ---- cells
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- cells ------------------------------------------------------------------------------------------------------- */
 
 /* A cell's extinction, by colour, along a ray: a polynomial of x, from 0 to 1. */
 typedef struct CellCubic {
@@ -133,8 +130,7 @@ SHARED_FUNCTION Vec3 cell_integral(const CellCubic *cubic, float x)
     return vec3_scale(vec3_mad(cubic->c0, x, vec3_mad(vec3_scale(cubic->c1, 0.5f), x, upper)), x);
 }
 
-/* ---- pieces
- * ------------------------------------------------------------------------------------------------------- */
+/* ---- pieces ------------------------------------------------------------------------------------------------------ */
 
 /* Logarithms of the ratios by which transmittance and the radiance of a black body may change over a piece. */
 #define PIECE_DEPTH 1.5f

@@ -97,8 +97,7 @@ SHARED_FUNCTION_APART Vec3 grid_factors(const SceneView *scene, uint number, Vec
                 grid_value(scene, grid, brick, cell, word + 2u, p));
 }
 
-/* ---- a ray's way through the cells
- * -------------------------------------------------------------------------------- */
+/* ---- a ray's way through the cells ------------------------------------------------------------------------------- */
 
 /* A ray in a grid's coordinates, of which distances in the world are the parameter. */
 typedef struct GridRay {

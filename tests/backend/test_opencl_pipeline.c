@@ -145,8 +145,7 @@ START_TEST(test_film_without_atomics)
 }
 END_TEST
 
-/* ---- failure and stop
- * ---------------------------------------------------------------------------------------------- */
+/* ---- failure and stop -------------------------------------------------------------------------------------------- */
 
 /* Batch 0 is the pilot's first; 4096 pilot paths are 16 batches. The film holds exactly the batches finished before the
  * failure. */

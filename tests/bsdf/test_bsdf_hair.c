@@ -20,8 +20,7 @@ static Bsdf hair_bsdf(float beta_m, float beta_n, float h, float absorption, uin
                   .coat_table = NONE};
 }
 
-/* ---- the reference: Chiang et al. 2016, in double
- * ------------------------------------------------------------------ */
+/* ---- the reference: Chiang et al. 2016, in double ---------------------------------------------------------------- */
 
 static double bessel_i0(double x)
 {
@@ -143,8 +142,7 @@ START_TEST(test_longitudinal)
 }
 END_TEST
 
-/* ---- sampling
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- sampling ---------------------------------------------------------------------------------------------------- */
 
 typedef struct HairCase {
     float beta_m, beta_n, h;
@@ -225,8 +223,7 @@ START_TEST(test_samples)
 }
 END_TEST
 
-/* ---- energy
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- energy ------------------------------------------------------------------------------------------------------ */
 
 /* Without absorption all light leaves: every sample weighs 1. With absorption, none weighs more. */
 START_TEST(test_energy)
@@ -306,8 +303,7 @@ START_TEST(test_material)
 }
 END_TEST
 
-/* ---- paths from the light
- * ------------------------------------------------------------------------------------------ */
+/* ---- paths from the light ---------------------------------------------------------------------------------------- */
 
 /* What a path from the light finds at a surface is what one from the camera finds. */
 START_TEST(test_adjoint_on_surfaces)

@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-/* ---- --mlt
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- --mlt ------------------------------------------------------------------------------------------------------- */
 
 static const BackendInterface CPU = {.name = "cpu"};
 static const BackendInterface *const BACKENDS[] = {&CPU};
@@ -171,8 +170,7 @@ START_TEST(test_mlt_old)
 }
 END_TEST
 
-/* ---- the manual page
- * ----------------------------------------------------------------------------------------------- */
+/* ---- the manual page --------------------------------------------------------------------------------------------- */
 
 /* Whether the lines of twinlight-render(1) from the one that starts with `from` to the next that starts with `to` have
  * `word`, with blanks or line ends around it, in a line that starts with `macro`. */

@@ -66,8 +66,7 @@ static void known_destroy(Known *known)
     combination_destroy(&known->combination);
 }
 
-/* ---- weights
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- weights ----------------------------------------------------------------------------------------------------- */
 
 /* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in
  * the tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are
@@ -408,8 +407,7 @@ START_TEST(test_rates_adopted)
 }
 END_TEST
 
-/* ---- importance and visits
- * ---------------------------------------------------------------------------------------- */
+/* ---- importance and visits --------------------------------------------------------------------------------------- */
 
 static uint cell_of(size_t x, size_t y)
 {

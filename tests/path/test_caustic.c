@@ -83,8 +83,7 @@ START_TEST(test_same)
 }
 END_TEST
 
-/* ---- light that nothing else finds
- * -------------------------------------------------------------------------------- */
+/* ---- light that nothing else finds ------------------------------------------------------------------------------- */
 
 /* Glass whose index hardly differs from 1 bends no light, so a floor under a pane of it, seen through the pane, is as
  * bright as without it; but no light can be connected with through it. */
@@ -173,8 +172,7 @@ START_TEST(test_unseen)
 }
 END_TEST
 
-/* ---- whether photons are worth it
- * ---------------------------------------------------------------------------------- */
+/* ---- whether photons are worth it -------------------------------------------------------------------------------- */
 
 /* A bead far away whose caustic only its own image shows. */
 #define FAR_BEAD SMOOTH_GLASS "AttributeBegin Translate -3 -0.9 3 Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n"

@@ -151,8 +151,7 @@ START_TEST(test_slice)
 }
 END_TEST
 
-/* ---- what ranks have
- * ------------------------------------------------------------------------------------------------ */
+/* ---- what ranks have --------------------------------------------------------------------------------------------- */
 
 /* Lists of steps and maps of photons are sent once each, and lists of as many steps are told apart. */
 START_TEST(test_pass_order)

@@ -12,8 +12,7 @@ static void check_light(const char *name, const char *light, double irradiance)
     analytic_check(name, got, irradiance / M_PI, ANALYTIC_TOLERANCE);
 }
 
-/* ---- disks
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- disks ------------------------------------------------------------------------------------------------------- */
 
 /* A parallel disk off the axis: Howell's catalogue of view factors, B-13. */
 START_TEST(test_parallel_disk)
@@ -63,8 +62,7 @@ START_TEST(test_tilted_disks)
 }
 END_TEST
 
-/* ---- polygons
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- polygons ---------------------------------------------------------------------------------------------------- */
 
 START_TEST(test_rectangles)
 {
@@ -127,8 +125,7 @@ START_TEST(test_bent_patch)
 }
 END_TEST
 
-/* ---- spheres
- * ------------------------------------------------------------------------------------------------------- */
+/* ---- spheres ----------------------------------------------------------------------------------------------------- */
 
 typedef struct Ball {
     double z_min, z_max, phi_max; /* of the unit sphere */

@@ -32,8 +32,7 @@ static void overlap(double a, double b, int count, double *cover)
         cover[i] = fmax(0.0, fmin(b, i + 1.0) - fmax(a, (double)i));
 }
 
-/* ---- filters
- * ------------------------------------------------------------------------------------------------------- */
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
 
 typedef struct Filter {
     const char *name, *parameters;
@@ -118,8 +117,7 @@ START_TEST(test_filter)
 }
 END_TEST
 
-/* ---- cameras
- * ------------------------------------------------------------------------------------------------------- */
+/* ---- cameras ----------------------------------------------------------------------------------------------------- */
 
 typedef struct View {
     const char *name, *camera;
@@ -205,8 +203,7 @@ START_TEST(test_look_at)
 }
 END_TEST
 
-/* ---- lenses
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- lenses ------------------------------------------------------------------------------------------------------ */
 
 /* The sum, centroid and mean squared distance from the centroid of a small lamp's image on the film. */
 static void spot_moments(const RenderedImage *image, double *sum, double middle[2], double *square)
@@ -266,8 +263,7 @@ START_TEST(test_lenses)
 }
 END_TEST
 
-/* ---- crop windows
- * ------------------------------------------------------------------------------------------------- */
+/* ---- crop windows ------------------------------------------------------------------------------------------------ */
 
 /* A window in fractions, rounded up as in pbrt: pixels 4 ... 11 of 16 and 3 ... 7 of 10 of the whole image. */
 START_TEST(test_crop_window)

@@ -44,8 +44,7 @@ static void light_text(const Environment *e, char *text, size_t size)
              m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8], test_path("map.pfm"));
 }
 
-/* ---- the map, in double
- * -------------------------------------------------------------------------------------------- */
+/* ---- the map, in double ------------------------------------------------------------------------------------------ */
 
 /* The direction in the light's space, by Cramer's rule. */
 static void light_direction(const double m[9], const double d[3], double out[3])
@@ -119,8 +118,7 @@ static double irradiance_of(const Environment *e)
     return sum * M_PI / (4.0 * COUNT * COUNT);
 }
 
-/* ---- tests
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- tests ------------------------------------------------------------------------------------------------------- */
 
 /* The map as seen in many directions. */
 START_TEST(test_view)

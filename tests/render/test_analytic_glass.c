@@ -7,8 +7,7 @@
 #define SPLIT_TOLERANCE 0.0025
 #define QUAD "Shape \"bilinearmesh\" \"point3 P\" "
 
-/* ---- slabs
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- slabs ------------------------------------------------------------------------------------------------------- */
 
 /* Transmittance and reflectance of a slab at z = 0 that fills the view: the half space below emits red, the one above
  * green, both with radiance 1. The camera looks down at `angle`. */
@@ -52,8 +51,7 @@ START_TEST(test_slabs)
 }
 END_TEST
 
-/* ---- the ball as a lens
- * ------------------------------------------------------------------------------------------- */
+/* ---- the ball as a lens ------------------------------------------------------------------------------------------ */
 
 /* A ray parallel to the axis of a unit ball at height h leaves it deflected by 2 (i - t), with sin i = h, sin t = h /
  * eta, at an angle of 2 t - i from the far pole. A small light is placed where it intersects the plane three units
@@ -79,8 +77,7 @@ START_TEST(test_ball_lens)
 }
 END_TEST
 
-/* ---- inside
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- inside ------------------------------------------------------------------------------------------------------ */
 
 /* Radiance inside is eta^2 times that outside: the camera is in a glass ball in a furnace, in its centre and at a point
  * where light in some directions is totally reflected forever. */
@@ -131,8 +128,7 @@ START_TEST(test_lamp_in_glass)
 }
 END_TEST
 
-/* ---- rough interfaces
- * ---------------------------------------------------------------------------------------------- */
+/* ---- rough interfaces -------------------------------------------------------------------------------------------- */
 
 static double smith_lambda(double cosine, double alpha)
 {

@@ -8,8 +8,7 @@ static double plane_under(unsigned samples, const char *light)
     return analytic_mean(samples, 2, ANALYTIC_LOOK_AT_ORIGIN ANALYTIC_DIFFUSE_PLANE "%s", light);
 }
 
-/* ---- delta lights: no noise
- * ---------------------------------------------------------------------------------------- */
+/* ---- delta lights: no noise -------------------------------------------------------------------------------------- */
 
 START_TEST(test_point)
 {
@@ -87,8 +86,7 @@ START_TEST(test_distant)
 }
 END_TEST
 
-/* ---- area lights and environments
- * --------------------------------------------------------------------------------- */
+/* ---- area lights and environments -------------------------------------------------------------------------------- */
 
 /* Power of a Lambertian surface: pi L area per side. The disk of radius r at height h gives an irradiance of pi L r^2 /
  * (r^2 + h^2). */
@@ -149,8 +147,7 @@ START_TEST(test_constant_environment)
 }
 END_TEST
 
-/* ---- blackbodies
- * --------------------------------------------------------------------------------------------------- */
+/* ---- blackbodies ------------------------------------------------------------------------------------------------- */
 
 /* The CIE 1931 observer by the fits of Wyman, Sloan and Shirley 2013, accurate to about 1 % of the maximum. */
 static double lobe(double wavelength, double mean, double below, double above)

@@ -5,8 +5,7 @@
 
 #define SAMPLES 16384
 
-/* ---- conductors
- * ---------------------------------------------------------------------------------------------------- */
+/* ---- conductors -------------------------------------------------------------------------------------------------- */
 
 /* Reflectance for unpolarised light of a metal of index eta + i k, in complex arithmetic (Born and Wolf 1999, 14.2). */
 static double fresnel_metal(double cosine, double eta, double k)
@@ -119,8 +118,7 @@ START_TEST(test_rough_mirrors)
 }
 END_TEST
 
-/* ---- mixes and interfaces
- * ------------------------------------------------------------------------------------------ */
+/* ---- mixes and interfaces ---------------------------------------------------------------------------------------- */
 
 /* "amount" is the weight of the second material. */
 START_TEST(test_mix)
@@ -145,8 +143,7 @@ START_TEST(test_interface)
 }
 END_TEST
 
-/* ---- alpha
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- alpha ------------------------------------------------------------------------------------------------------- */
 
 /* Rays pass or not according to a hash of the ray, as in pbrt: the view must be wide enough for rays to differ by more
  * than rounding. */
@@ -202,8 +199,7 @@ START_TEST(test_invisible)
 }
 END_TEST
 
-/* ---- coated diffuse
- * ------------------------------------------------------------------------------------------------ */
+/* ---- coated diffuse ---------------------------------------------------------------------------------------------- */
 
 /* The cosine inside for a direction of cosine c outside. */
 static double inside(double c, double eta)

@@ -9,8 +9,7 @@ static void map_make(void)
     analytic_map_make(test_path("map.pfm"), false);
 }
 
-/* ---- images
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- images ------------------------------------------------------------------------------------------------------ */
 
 static double texel_at(const void *context, double u, double v, int channel)
 {
@@ -145,8 +144,7 @@ START_TEST(test_encodings)
 }
 END_TEST
 
-/* ---- parametrisations
- * ---------------------------------------------------------------------------------------------- */
+/* ---- parametrisations -------------------------------------------------------------------------------------------- */
 
 /* pbrt's (u, v) of a point on the plane z = 0 or above it, for the shapes and mappings below; returns false off the
  * shape. */
@@ -242,8 +240,7 @@ START_TEST(test_parametrisation)
 }
 END_TEST
 
-/* ---- alpha
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- alpha ------------------------------------------------------------------------------------------------------- */
 
 static double squares_image(const void *context, double u, double v, int channel)
 {

@@ -203,8 +203,7 @@ static inline double fixture_irradiance(const LightFixture *f, uint light, Vec3 
                       "%s: irradiance %g, not %g +- %g", #expected, got_, e_, error_);                                 \
     } while (0)
 
-/* ---- random numbers from a state: in a range, in a cube of that half width, and of unit length
- * ---------------------- */
+/* ---- random numbers from a state: in a range, in a cube of that half width, and of unit length ------------------- */
 
 static inline double fixture_uniform(unsigned *state, double low, double high)
 {
