@@ -1,5 +1,6 @@
 /* Openings: the rectangles that are fitted to rays through windows, those found for a room, and that its picture is the
  * same with them but for less noise. */
+#include "support/geometry_fixture.h"
 #include "support/render_fixture.h"
 #include "support/room_scene.h"
 #include "support/test_util.h"
@@ -134,15 +135,6 @@ END_TEST
 
 /* ---- the frame --------------------------------------------------------------------------------------------------- */
 
-static Vec3 random_direction(unsigned short state[3])
-{
-    Vec3 v;
-    do
-        v = vec3(between(-1, 1, state), between(-1, 1, state), between(-1, 1, state));
-    while (!(vec3_dot(v, v) < 1.0f && vec3_dot(v, v) > 0.01f));
-    return vec3_normalize(v);
-}
-
 /* Normals of walls in a frame, turned from the world's by 33 degrees (_i 0) or not at all (1), and as many of round
  * things: it is found again, the world's exactly. With nothing but a floor (2), that is perpendicular to an axis;
  * without surfaces (3) the frame is the world's. */
@@ -151,7 +143,7 @@ START_TEST(test_frame)
     const Vec3 axis = vec3_normalize(vec3(1.0f, 2.0f, 3.0f));
     const float angle = _i == 0 || _i == 2 ? (float)(33.0 * M_PI / 180.0) : 0.0f;
     Vec3 normals[RAYS], axes[3];
-    unsigned short state[3] = {4, 2, 9};
+    TestRandom random = {.seed = 4};
     for (int k = 0; k < 3; ++k) { /* Rodrigues */
         Vec3 v = vec3(k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f);
         Vec3 turned = vec3_add(vec3_scale(v, cosf(angle)), vec3_scale(vec3_cross(axis, v), sinf(angle)));
@@ -159,7 +151,7 @@ START_TEST(test_frame)
     }
     for (size_t i = 0; i < RAYS; ++i) {
         Vec3 wall = vec3_scale(axes[_i == 2 ? 2 : i % 3], i % 4 < 2 ? 1.0f : -1.0f);
-        normals[i] = _i == 3 ? vec3_splat(0.0f) : _i < 2 && i % 7 < 4 ? random_direction(state) : wall;
+        normals[i] = _i == 3 ? vec3_splat(0.0f) : _i < 2 && i % 7 < 4 ? random_direction(&random) : wall;
     }
     Frame frame = opening_frame(normals, RAYS);
     const Vec3 found[3] = {frame.t, frame.b, frame.n};
