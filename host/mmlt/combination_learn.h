@@ -78,7 +78,8 @@ typedef struct Combination {
     double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
     double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */
     bool hidden; /* light that path tracing cannot find may exist: of rare light it shows only what it clamps */
-    bool rare_missed; /* the same, since path tracing has found significantly less rare light than the chains have */
+    bool rare_missed; /* the same, since path tracing has found significantly less rare light than the chains have, or
+                         theirs is not known well enough to tell */
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it, or
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;

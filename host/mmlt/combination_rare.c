@@ -35,10 +35,10 @@ void combination_rare_update(Combination *combination)
 {
     image_learn(combination);
     PixelStatistics chains = pixel_series_statistics(&combination->rare_whole, NULL, 0);
-    double tiles = (double)combination_tile_count(combination),
-           doubt = fmax(RARE_MISSED_DEVIATIONS * sqrt(chains.spread / chains.weight),
-                        RARE_MISSED_PART * tiles * combination_mean_light(combination));
-    combination->rare_missed = chains.pictures > 1 && image_light(combination, SERIES_PATHS_RARE) < chains.mean - doubt;
+    double light = (double)combination_tile_count(combination) * combination_mean_light(combination),
+           error = RARE_MISSED_DEVIATIONS * sqrt(chains.spread / chains.weight),
+           doubt = fmax(error, RARE_MISSED_PART * light), own = image_light(combination, SERIES_PATHS_RARE);
+    combination->rare_missed = chains.pictures > 1 && (error > RARE_KNOWN_PART * light || own < chains.mean - doubt);
 }
 
 bool combination_rare_hidden(const Combination *combination)

@@ -109,6 +109,10 @@
 #define RARE_MISSED_DEVIATIONS 3.0
 #define RARE_MISSED_PART 0.01
 
+/* As long as so many standard errors are more than this part of all light, that comparison tells nothing, and path
+ * tracing counts as finding too little; docs/TUNING.md. */
+#define RARE_KNOWN_PART 0.05
+
 /* One estimator must exceed another by this many standard errors before the difference counts as light that the other
  * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
 #define MISSING_DEVIATIONS 2.0
