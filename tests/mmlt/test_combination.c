@@ -1,99 +1,8 @@
 /* Weights of chains, pool and path tracing, from generations of synthetic noise. */
-#include "math/rng.h"
 #include "mmlt/combination.h"
 #include "mmlt/importance.h"
 
-#include "mmlt/test_combination.h"
-
-#include <string.h>
-
-#define SIDE 32
-#define PIXELS ((size_t)SIDE * SIDE)
-
-typedef struct Estimators {
-    Film films[ESTIMATOR_COUNT];
-    Combination combination;
-    uint draws;
-} Estimators;
-
-static void estimators_init(Estimators *estimators)
-{
-    const int crop[4] = {0, 0, SIDE, SIDE};
-    Error error = {0};
-    *estimators = (Estimators){0};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
-        ck_assert(film_init(&estimators->films[s], SIDE, SIDE, crop, &error));
-        ck_assert(film_light_reserve(&estimators->films[s], &error));
-    }
-    ck_assert(film_rare_reserve(&estimators->films[ESTIMATOR_CHAINS], &error));
-    ck_assert(film_rare_reserve(&estimators->films[ESTIMATOR_PATHS], &error));
-    ck_assert(combination_init(&estimators->combination, &estimators->films[0], &error));
-}
-
-static void estimators_destroy(Estimators *estimators)
-{
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        film_destroy(&estimators->films[s]);
-    combination_destroy(&estimators->combination);
-}
-
-/* Uniform with mean 0 and variance 1. */
-static double noise(Estimators *estimators)
-{
-    Random4 random = random_four(estimators->draws++, 1, 2, 3, 4, 5);
-    return (((double)random.x[0] + 0.5) / 4294967296.0 - 0.5) * sqrt(12.0);
-}
-
-/* Every pixel of the estimator gets `mean` + noise of standard deviation `deviation` at one sample per pixel. */
-static void estimator_set(Estimators *estimators, int s, double samples, double mean, double deviation)
-{
-    Film *film = &estimators->films[s];
-    film_clear(film);
-    film->light_samples = (uint64_t)(samples * (double)PIXELS);
-    for (size_t i = 0; i < PIXELS; ++i) {
-        double value = mean + deviation * noise(estimators) / sqrt(samples);
-        for (size_t c = 0; c < 3; ++c)
-            film->light_sums[3 * i + c] = llrint(value * samples * 0x1p30);
-    }
-}
-
-/* Sets the rare light of a pixel, at 4 steps and 2 samples of path tracing per pixel: as chains and as path tracing
- * find it. */
-static void rare_set(Estimators *estimators, size_t pixel, double by_chains, double by_paths)
-{
-    Film *chains = &estimators->films[ESTIMATOR_CHAINS], *paths = &estimators->films[ESTIMATOR_PATHS];
-    for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
-        chains->rare_sums[i] = llrint(4.0 * by_chains * 0x1p30);
-        paths->rare_sums[i] = llrint(2.0 * by_paths * 0x1p30);
-        paths->light_sums[i] += paths->rare_sums[i];
-    }
-}
-
-void films_combine(Combination *learner, Combination *teacher, Film *const films[ESTIMATOR_COUNT])
-{
-    CombinedImage image;
-    Error error = {0};
-    double samples[ESTIMATOR_COUNT];
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        samples[s] = (double)films[s]->light_samples;
-    ck_assert(combined_image_init(&image, films[ESTIMATOR_CHAINS], &error));
-    combined_image_begin(&image, learner, teacher, samples);
-    for (int s = ESTIMATOR_COUNT - 1; s >= 0; --s)
-        combined_image_add(&image, (EstimatorKind)s, films[s]);
-    combined_image_finish(&image, films[ESTIMATOR_CHAINS]);
-    combination_variances_update(learner, teacher);
-    combined_image_destroy(&image);
-}
-
-static double generation(Estimators *estimators)
-{
-    Film *const films[ESTIMATOR_COUNT] = {&estimators->films[0], &estimators->films[1], &estimators->films[2]};
-    double sum = 0.0;
-    films_combine(&estimators->combination, &estimators->combination, films);
-    for (size_t i = 0; i < 3 * PIXELS; ++i)
-        sum += (double)films[ESTIMATOR_CHAINS]->light_sums[i];
-    return sum * 0x1p-30 / 3.0 / (double)films[ESTIMATOR_CHAINS]->light_samples;
-}
+#include "mmlt/test_combination_estimators.h"
 
 /* Path tracing whose samples cancel each other's errors over the generations of a replica (_i 1): the replicas' means
  * differ less than their generations say, and so path tracing gets most of the weight. The same if they do so over
@@ -383,120 +292,6 @@ START_TEST(test_dot)
 }
 END_TEST
 
-/* The excess that chains show goes with chains and pool, not with path tracing. */
-START_TEST(test_excess)
-{
-    Estimators estimators;
-    estimators_init(&estimators);
-    for (int g = 0; g < 6; ++g) {
-        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 0.1);
-        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.1);
-        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 3.0, 0.1);
-        for (size_t i = 0; i < 3 * PIXELS; ++i)
-            estimators.films[ESTIMATOR_CHAINS].sums[i] = llrint(4.0 * 2.0 * 0x1p30);
-        ck_assert_double_eq_tol(generation(&estimators), 3.0, 0.02);
-    }
-    estimators_destroy(&estimators);
-}
-END_TEST
-
-/* Rare light that chains and path tracing both find: each counts by its variance, the chains' by twice that (_i 0),
- * also where path tracing has not found it, whose variance is then that of finding it once (_i 1). */
-START_TEST(test_rare)
-{
-    Estimators estimators;
-    double mean = 0.0;
-    estimators_init(&estimators);
-    for (int g = 0; g < 60; ++g) {
-        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 3.0, 3.0);
-        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 3.0, 3.0);
-        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 0.1);
-        for (size_t i = 0; i < PIXELS; ++i) {
-            double found = 2.0 + noise(&estimators) / sqrt(4.0),
-                   own = _i == 1 ? 0.0 : 2.0 + sqrt(2.0) * noise(&estimators) / sqrt(2.0);
-            rare_set(&estimators, i, found, own);
-        }
-        mean = generation(&estimators);
-    }
-    double rare = estimators.combination.paths_rare;
-    printf("rare light: weight of path tracing %.3f, its own part %.3f, mean %.3f\n",
-           estimators.combination.weight[ESTIMATOR_PATHS], rare, mean);
-    ck_assert_double_eq_tol(mean, 3.0, _i == 1 ? 0.1 : 0.05);
-    if (_i == 1)
-        ck_assert_double_lt(rare, 0.02);
-    else
-        ck_assert_double_eq_tol(rare, 0.5 / (0.5 + 1.0), 0.02);
-    /* Chains and pool: 1 / (4/9 + 1/9); path tracing: .01 / 2 and rare light of the variance (1 - rare)^2 / 4 + rare^2,
-     * of the covariance with the chains' .8 times (1 - rare) / 4. */
-    double chains = 1.8, own = 0.005 + (_i == 1 ? 0.25 : 2.0 / 9.0), both = _i == 1 ? 0.2 : 0.2 * 2.0 / 3.0;
-    ck_assert_double_eq_tol(estimators.combination.weight[ESTIMATOR_PATHS],
-                            (chains - both) / (chains + own - 2.0 * both), 0.01);
-    estimators_destroy(&estimators);
-}
-END_TEST
-
-/* Path tracing's own rare light has many fireflies in a few tiles and none elsewhere, where its stated variance is
- * small: it has no weight there either. */
-START_TEST(test_fireflies)
-{
-    Estimators estimators;
-    estimators_init(&estimators);
-    for (int g = 0; g < 20; ++g) {
-        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 1.0);
-        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 1.0);
-        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 1.0);
-        for (size_t i = 0; i < PIXELS; ++i) {
-            double found = 0.1 + 0.1 * noise(&estimators), own = 0.1 + 0.01 * noise(&estimators);
-            if (i % SIDE < 4 && i / SIDE == 4 * ((size_t)g % 4)) /* each time in another patch */
-                own += 100.0;
-            rare_set(&estimators, i, found, own);
-        }
-        generation(&estimators);
-    }
-    printf("fireflies: weight of path tracing's rare light %.5f\n", estimators.combination.paths_rare);
-    ck_assert_double_lt(estimators.combination.paths_rare, 0.01);
-    estimators_destroy(&estimators);
-}
-END_TEST
-
-/* Path tracing finds none of the rare light, which is half of all (_i 0 and 4), all of it (1), all but 4 % (2) or
- * all but 1.5 % (3), and states hardly any variance. No tile tells so: the chains' errors there are large. In the whole
- * image they are small (_i 0, 1 and 3), or alike in all tiles (2), so that the 4 % are not significant; and the 1.5 % of
- * the rare light do not matter. In the last case they are so large that not even all of it is significant. Where path
- * tracing misses light, or may miss much, its own has no weight, and it is never alone. */
-START_TEST(test_rare_missed)
-{
-    static const struct {
-        double found, common, deviation;
-        bool trusted;
-    } cases[] = {{0.0, 0.0, 0.8, false},
-                 {1.0, 0.0, 0.8, true},
-                 {0.96, 0.13, 0.8, true},
-                 {0.985, 0.0, 0.2, true},
-                 {0.0, 2.0, 0.8, false}};
-    Estimators estimators;
-    estimators_init(&estimators);
-    for (int g = 0; g < 20; ++g) {
-        double common = g % 2 == 0 ? cases[_i].common : -cases[_i].common;
-        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 3.0);
-        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 3.0);
-        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 0.5, 0.1);
-        for (size_t i = 0; i < PIXELS; ++i)
-            rare_set(&estimators, i, 0.5 * (1.0 + common) + cases[_i].deviation * noise(&estimators),
-                     0.5 * cases[_i].found + 0.01 * noise(&estimators));
-        generation(&estimators);
-    }
-    combination_rates(&estimators.combination);
-    double weight = estimators.combination.paths_rare, alone = combination_alone_error(&estimators.combination);
-    printf("rare light missed, %d: weight of path tracing's own %.3f, alone %.3g times the error\n", _i, weight, alone);
-    if (cases[_i].trusted)
-        ck_assert(weight > 0.9 && alone < 2.0);
-    else
-        ck_assert(weight == 0.0 && alone > DBL_MAX);
-    estimators_destroy(&estimators);
-}
-END_TEST
-
 /* The plan gives time to the estimator with low variance: only path tracing, or only chains. The error of chains also
  * falls with the size of pools, so these get 0.45 of the time of both; path tracing gets its minimum, one twentieth. */
 START_TEST(test_plan)
@@ -622,14 +417,11 @@ int main(void)
     tcase_add_test(tcase, test_paths_kept);
     tcase_add_test(tcase, test_beside);
     tcase_add_test(tcase, test_dot);
-    tcase_add_test(tcase, test_excess);
-    tcase_add_loop_test(tcase, test_rare, 0, 2);
-    tcase_add_test(tcase, test_fireflies);
-    tcase_add_loop_test(tcase, test_rare_missed, 0, 5);
     tcase_add_loop_test(tcase, test_plan, 0, 2);
     tcase_add_test(tcase, test_importance);
     tcase_add_loop_test(tcase, test_visits, 0, 2);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, combination_rare_tests());
     suite_add_tcase(suite, combination_known_tests());
     return test_run(suite);
 }

@@ -9,7 +9,8 @@
  * teacher's weights, and lets the learner learn from it. The chains' film becomes the combination. */
 void films_combine(Combination *learner, Combination *teacher, Film *const films[ESTIMATOR_COUNT]);
 
-/* combinations of given variances */
+/* Light above the clamping thresholds; combinations of given variances. */
+TCase *combination_rare_tests(void);
 TCase *combination_known_tests(void);
 
 #endif
