@@ -110,6 +110,7 @@ EXTRA_DIST += \
 	tests/support/room_scene.h \
 	tests/mmlt/test_combination.h \
 	tests/mmlt/test_combination_estimators.h \
+	tests/mmlt/test_combination_model.h \
 	tests/geometry/test_bvh.h \
 	tests/mmlt/test_chain.h \
 	tests/mmlt/test_partition.h \
@@ -202,8 +203,10 @@ tests_test_bidirectional_SOURCES = tests/path/test_bidirectional.c \
 	tests/path/test_bidirectional_weights.c
 
 tests_test_combination_SOURCES = tests/mmlt/test_combination.c \
+	tests/mmlt/test_combination_bidirectional.c \
 	tests/mmlt/test_combination_estimators.c \
 	tests/mmlt/test_combination_known.c \
+	tests/mmlt/test_combination_model.c \
 	tests/mmlt/test_combination_rare.c
 
 tests_test_bsdf_SOURCES = tests/bsdf/test_bsdf.c \

@@ -160,9 +160,11 @@ void bench_chains_write(const BenchScene *scene, int time, FILE *stream)
         fputs(" chains and makes ", stream);
         html_number(stream, (double)chains.steps / runs, 3);
         fprintf(stream,
-                " mutations. In the last generation\u2019s image the weight of chains is %.0f %%, of the pool %.0f %% "
-                "and of path tracing %.0f %%. Acceptance in per cent, by kind of mutation and depth in segments:</p>\n",
-                100.0 * chains.weights[0] / runs, 100.0 * chains.weights[1] / runs, 100.0 * chains.weights[2] / runs);
+                " mutations. In the last generation\u2019s image the weight of chains is %.0f %%, of the pool %.0f %%, "
+                "of path tracing %.0f %% and of bidirectional path tracing %.0f %%. Acceptance in per cent, by kind of "
+                "mutation and depth in segments:</p>\n",
+                100.0 * chains.weights[0] / runs, 100.0 * chains.weights[1] / runs, 100.0 * chains.weights[2] / runs,
+                100.0 * chains.weights[3] / runs);
         depths_find(&chains, &first, &last);
         acceptance_table(stream, &chains, first, last);
         health_table(stream, &chains, first, last);

@@ -199,7 +199,7 @@ static Work work_mean(const Tables *tables, int series)
                                  record->ray_seconds / threads,
                                  record->chains.pool_seconds,
                                  record->chains.chain_seconds,
-                                 record->chains.direct_seconds};
+                                 record->chains.direct_seconds + record->chains.bidirectional_seconds};
         double *const means[] = {&work.load, &work.build, &work.seconds, &work.write,
                                  &work.rays, &work.pool,  &work.chains,  &work.direct};
         for (int i = 0; i < 8; ++i)

@@ -50,9 +50,11 @@ static const Field FIELDS[] = {
     NUMBER(chains.pool_seconds),
     NUMBER(chains.chain_seconds),
     NUMBER(chains.direct_seconds),
+    NUMBER(chains.bidirectional_seconds),
     NUMBER(chains.weights[0]),
     NUMBER(chains.weights[1]),
     NUMBER(chains.weights[2]),
+    NUMBER(chains.weights[3]),
 };
 
 #define FIELD_COUNT (sizeof FIELDS / sizeof FIELDS[0])

@@ -365,6 +365,41 @@ static void sums_clear(int64_t *sums, size_t first, size_t end)
         memset(sums + 3 * first, 0, 3 * (end - first) * sizeof *sums);
 }
 
+typedef struct LightGathering {
+    Film *film;
+    double count; /* film_count of `samples`; 0: nothing is divided */
+} LightGathering;
+
+/* Full sums stay full. */
+static int64_t sum_gathered(int64_t light, int64_t own, double factor)
+{
+    if (own != film_sum_shown(own))
+        return own;
+    return film_sum_rounded((double)film_sum_shown(light) + factor * (double)own);
+}
+
+static void row_gather(void *context, size_t row)
+{
+    const LightGathering *gathering = context;
+    Film *film = gathering->film;
+    size_t width = (size_t)(film->crop[2] - film->crop[0]);
+    for (size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
+        uint32_t own = film_count(film, pixel);
+        double factor = gathering->count > 0.0 && own > 0 ? gathering->count / own : 1.0;
+        for (size_t c = 3 * pixel; c < 3 * pixel + 3; ++c)
+            film->light_sums[c] = sum_gathered(film->light_sums[c], film->sums[c], factor);
+    }
+    sums_clear(film->sums, row * width, (row + 1) * width);
+    memset(film->counts + row * width, 0, width * sizeof *film->counts);
+}
+
+void film_light_gather(Film *film, uint64_t samples)
+{
+    LightGathering gathering = {film, (double)samples * film_sample_units(film->reconstruction)};
+    rows_run(film, row_gather, &gathering);
+    film->every_count = 0;
+}
+
 typedef struct LightAdding {
     Film *film;
     const float *change;

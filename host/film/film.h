@@ -113,6 +113,11 @@ void film_swap_own(Film *a, Film *b);
  * unless the film spreads splats. */
 void film_normalize(Film *film, uint64_t samples);
 
+/* Moves the pixels' own samples, `sums`, to light_sums, in a film without sums per depth. samples: of every pixel, if
+ * it has so many: what is moved is divided by the number that lie near the pixel, and multiplied by `samples`. 0: some
+ * pixels have none, nothing is divided. */
+void film_light_gather(Film *film, uint64_t samples);
+
 /* Adds `change`, 3 values a pixel in units of the sums, to light_sums, and `samples` to light_samples. */
 void film_light_add(Film *film, const float *change, int64_t samples);
 

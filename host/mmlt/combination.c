@@ -92,8 +92,10 @@ void combination_archive(Archive *archive, Combination *combination)
     ARCHIVE_FIELD(archive, combination->rare_chains);
     ARCHIVE_FIELD(archive, combination->rare_paths);
     ARCHIVE_FIELD(archive, combination->best);
+    ARCHIVE_FIELD(archive, combination->best_others);
     ARCHIVE_FIELD(archive, combination->weight);
     ARCHIVE_FIELD(archive, combination->paths_rare);
+    archive_flags(archive, &combination->bidirectional_better, 1, "whether bidirectional path tracing is better");
     archive_flags(archive, &combination->rare_missed, 1, "whether path tracing misses rare light");
 }
 
@@ -105,6 +107,7 @@ typedef struct TileCombination {
     double paths;
     double chains; /* weight of the chains against the pool; both share the excess */
     double paths_rare; /* weight of path tracing's own rare light against the chains' */
+    double bidirectional; /* weight of bidirectional path tracing against all others */
     double variance;
 } TileCombination;
 
@@ -125,12 +128,15 @@ typedef struct CombinationTerms {
     const double *samples; /* of each estimator */
     double correlation; /* Combination.chains_correlation */
     double rare_most; /* largest weight of path tracing's own rare light */
+    double bidirectional_most; /* largest weight of bidirectional path tracing */
+    double bidirectional_first; /* its weight if its variance is not known */
 } CombinationTerms;
 
 /* The terms for these numbers of samples. The largest weight that path tracing's own rare light may have in a tile,
  * against the chains', is that by the variances of all tiles together: a tile states too small a variance as long as it
  * has not met one of the paths, which are fireflies. factor: of the chains' variance. */
-static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor)
+static CombinationTerms others_terms(const Combination *combination, const double samples[ESTIMATOR_COUNT],
+                                     double factor)
 {
     CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
     if (samples[ESTIMATOR_PATHS] > 0.0 && !combination_rare_hidden(combination))
@@ -145,7 +151,7 @@ static CombinationTerms terms_of(const Combination *combination, const double sa
  * the covariance c. The weight w of the second estimate minimises (1 - w)^2 a + w^2 b + 2 w (1 - w) c, the variance of
  * the whole tile's mean: hence the correlation. Weights are in [0, 1] for any variances, those that are infinite or NaN
  * included. Path tracing alone shows all light. */
-static TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms)
+static TileCombination others_combination(const CombinationTile *tile, const CombinationTerms *terms)
 {
     const double *spread = tile->spread, *samples = terms->samples;
     if (!(samples[ESTIMATOR_CHAINS] > 0.0))
@@ -171,6 +177,56 @@ static TileCombination tile_combination(const CombinationTile *tile, const Combi
     best.variance = (1.0 - best.paths) * (1.0 - best.paths) * a + best.paths * best.paths * b +
                     2.0 * best.paths * (1.0 - best.paths) * c;
     return best;
+}
+
+/* Adds bidirectional path tracing, whose errors are independent of those of the others. */
+static TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms)
+{
+    TileCombination best = others_combination(tile, terms);
+    best.bidirectional = terms->bidirectional_first;
+    if (!(terms->bidirectional_most > 0.0))
+        return best;
+    double own = tile->spread[ESTIMATOR_BIDIRECTIONAL] / terms->samples[ESTIMATOR_BIDIRECTIONAL],
+           w = fmin(weight_against(own, best.variance), terms->bidirectional_most);
+    best.bidirectional = w;
+    best.variance = w * w * own + (1.0 - w) * (1.0 - w) * best.variance;
+    return best;
+}
+
+/* A tile with the chains' variances times `factor`. */
+static CombinationTile tile_varied(const CombinationTile *known, double factor)
+{
+    CombinationTile tile = *known;
+    tile.spread[ESTIMATOR_CHAINS] *= factor;
+    tile.spread[SERIES_EXCESS] *= factor;
+    tile.spread[SERIES_RARE] *= factor;
+    return tile;
+}
+
+static double bidirectional_work(const double samples[ESTIMATOR_COUNT])
+{
+    return estimator_cost(ESTIMATOR_BIDIRECTIONAL) * samples[ESTIMATOR_BIDIRECTIONAL];
+}
+
+/* The terms with bidirectional path tracing. If its variance is known: in no tile has it more weight than by the
+ * variances of all tiles together, since it has fireflies. every: of one tile in so many. */
+static CombinationTerms terms_of(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor,
+                                 size_t every)
+{
+    CombinationTerms terms = others_terms(combination, samples, factor);
+    double own = 0.0, others = 0.0, light = combination_mean_light(combination);
+    if (!combination->ready[ESTIMATOR_BIDIRECTIONAL])
+        terms.bidirectional_first = bidirectional_work(samples) / fmax(estimators_work(samples), SPREAD_MIN);
+    if (!(samples[ESTIMATOR_BIDIRECTIONAL] > 0.0) || !combination->ready[ESTIMATOR_BIDIRECTIONAL])
+        return terms;
+    for (size_t i = 0; i < combination_tile_count(combination); i += every) {
+        const CombinationTile tile = tile_varied(&combination->known[i], factor);
+        double square = tile_relative_square(&tile, light);
+        own += tile.spread[ESTIMATOR_BIDIRECTIONAL] / square;
+        others += others_combination(&tile, &terms).variance / square;
+    }
+    terms.bidirectional_most = weight_against(own / samples[ESTIMATOR_BIDIRECTIONAL], others);
+    return terms;
 }
 
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
@@ -199,23 +255,21 @@ static double error_of(const Combination *combination, const double samples[ESTI
                        size_t every)
 {
     double sum = 0.0, light = combination_mean_light(combination), factor = chains_factor(combination, samples);
-    const CombinationTerms terms = terms_of(combination, samples, factor);
+    const CombinationTerms terms = terms_of(combination, samples, factor, every);
     for (size_t i = 0; i < combination_tile_count(combination); i += every) {
-        CombinationTile tile = combination->known[i];
-        tile.spread[ESTIMATOR_CHAINS] *= factor;
-        tile.spread[SERIES_EXCESS] *= factor;
-        tile.spread[SERIES_RARE] *= factor;
+        const CombinationTile tile = tile_varied(&combination->known[i], factor);
         double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
         sum += (tile_combination(&tile, &terms).variance + direct) / tile_relative_square(&tile, light);
     }
     return sum;
 }
 
-/* Whether the variances of all estimators that have samples are known. */
+/* Whether the variances of all estimators that have samples are known; of bidirectional path tracing they need not
+ * be. */
 static bool combination_known(const Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        if (samples[s] > 0.0 && !combination->ready[s])
+        if (s != ESTIMATOR_BIDIRECTIONAL && samples[s] > 0.0 && !combination->ready[s])
             return false;
     return true;
 }
@@ -237,30 +291,38 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
         tile->weight[shown - 1] = 1.0;
     } else if (known) {
         TileCombination best = tile_combination(tile, terms);
-        tile->weight[ESTIMATOR_PATHS] = best.paths;
-        tile->weight[ESTIMATOR_CHAINS] = (1.0 - best.paths) * best.chains;
-        tile->weight[ESTIMATOR_POOL] = (1.0 - best.paths) * (1.0 - best.chains);
+        const double others = 1.0 - best.bidirectional;
+        tile->weight[ESTIMATOR_BIDIRECTIONAL] = best.bidirectional;
+        tile->weight[ESTIMATOR_PATHS] = others * best.paths;
+        tile->weight[ESTIMATOR_CHAINS] = others * (1.0 - best.paths) * best.chains;
+        tile->weight[ESTIMATOR_POOL] = others * (1.0 - best.paths) * (1.0 - best.chains);
         tile->paths_rare = best.paths_rare;
     } else {
         double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
-        tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / (2.0 * pool + paths);
-        tile->weight[ESTIMATOR_PATHS] = paths / (2.0 * pool + paths);
+        double bidirectional = bidirectional_work(samples);
+        double all = 2.0 * pool + paths + bidirectional;
+        tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / all;
+        tile->weight[ESTIMATOR_PATHS] = paths / all;
+        tile->weight[ESTIMATOR_BIDIRECTIONAL] = bidirectional / all;
     }
 }
 
 /* Weight of a generation's picture in that of all: in inverse proportion to its variance, as its work is if all divide
  * work alike. Generations in which work was divided otherwise, such as those without path tracing, count by the error
- * expected of that; and less while variances are not known. */
+ * expected of that, relative to the best division without bidirectional path tracing, so that those before and with it
+ * compare; and, but for bidirectional path tracing, less while variances are not known. */
 static double generation_worth(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool known)
 {
-    double work = estimators_work(samples), best[ESTIMATOR_COUNT];
-    if (!known || !(combination->best[ESTIMATOR_PATHS] > 0.0))
-        return FIRST_WORTH * work;
+    double work = estimators_work(samples), bidirectional = bidirectional_work(samples), best[ESTIMATOR_COUNT],
+           most = bidirectional > 0.0 ? WORTH_BIDIRECTIONAL_MOST : WORTH_MOST;
+    if (!known || !(combination->best[ESTIMATOR_PATHS] > 0.0) ||
+        (bidirectional > 0.0 && !combination->ready[ESTIMATOR_BIDIRECTIONAL]))
+        return FIRST_WORTH * (work - bidirectional) + bidirectional;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        best[s] = combination->best[s] * work / estimators_work(combination->best);
+        best[s] = combination->best_others[s] * work / estimators_work(combination->best_others);
     double own = error_of(combination, samples, false, 1);
-    return own > 0.0 ? work * fmin(error_of(combination, best, false, 1) / own, WORTH_MOST) : work;
+    return own > 0.0 ? work * fmin(error_of(combination, best, false, 1) / own, most) : work;
 }
 
 static void weights_average(Combination *combination)
@@ -277,12 +339,16 @@ static void weights_average(Combination *combination)
 
 uint64_t combination_weights_set(Combination *combination, const double samples[ESTIMATOR_COUNT])
 {
-    bool known = combination_known(combination, samples);
-    const CombinationTerms terms = terms_of(combination, samples, 1.0);
+    double shown[ESTIMATOR_COUNT];
+    memcpy(shown, samples, sizeof shown);
+    if (combination->bidirectional_trial)
+        shown[ESTIMATOR_BIDIRECTIONAL] = 0.0;
+    bool known = combination_known(combination, shown);
+    const CombinationTerms terms = terms_of(combination, shown, 1.0, 1);
     for (size_t i = 0; i < combination_tile_count(combination); ++i)
         weights_set(combination, &combination->known[i], known, &terms);
     weights_average(combination);
-    return (uint64_t)fmax(1.0, rint(generation_worth(combination, samples, known)));
+    return (uint64_t)fmax(1.0, rint(generation_worth(combination, shown, known)));
 }
 
 /* ---- how much of each -------------------------------------------------------------------------------------------- */
@@ -290,7 +356,7 @@ uint64_t combination_weights_set(Combination *combination, const double samples[
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors)
 {
     double light = combination_mean_light(combination);
-    const CombinationTerms terms = terms_of(combination, samples, 1.0);
+    const CombinationTerms terms = terms_of(combination, samples, 1.0, 1);
     bool known = combination_known(combination, samples) && light > 0.0;
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         const CombinationTile *tile = &combination->known[i];
@@ -299,14 +365,34 @@ void combination_errors(const Combination *combination, const double samples[EST
     }
 }
 
+/* A division of work, and the error of the picture by it. */
+typedef struct SearchBest {
+    double samples[ESTIMATOR_COUNT], error;
+} SearchBest;
+
+/* Adopts a division of work if it has less error. work: parts of the estimators. */
+static void search_try(const Combination *combination, size_t every, const double work[ESTIMATOR_COUNT],
+                       SearchBest *best)
+{
+    SearchBest tried;
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        tried.samples[s] = work[s] / estimator_cost((EstimatorKind)s);
+    tried.error = error_of(combination, tried.samples, true, every);
+    if (tried.error < best->error)
+        *best = tried;
+}
+
+static int search_threads(const Combination *combination)
+{
+    return combination_tile_count(combination) < PLAN_TILES ? 1 : combination->threads;
+}
+
 /* The best division of work for each part of path tracing. Chains and pools have one part each or more, or half a part
  * each. */
 typedef struct RatesSearch {
     const Combination *combination;
     size_t every;
-    struct {
-        double samples[ESTIMATOR_COUNT], error;
-    } best[PLAN_PARTS];
+    SearchBest best[PLAN_PARTS];
 } RatesSearch;
 
 static void rates_of_paths(void *context, size_t paths)
@@ -316,22 +402,16 @@ static void rates_of_paths(void *context, size_t paths)
     const size_t rest = PLAN_PARTS - paths, most = rest > 1 ? rest - 1 : 1;
     for (size_t pool = 1; paths > 0 && pool <= most; ++pool) {
         const double part = rest > 1 ? (double)pool : 0.5;
-        double samples[ESTIMATOR_COUNT] = {
-            [ESTIMATOR_CHAINS] = (double)rest - part, [ESTIMATOR_POOL] = part, [ESTIMATOR_PATHS] = (double)paths};
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-            samples[s] /= estimator_cost((EstimatorKind)s);
-        double error = error_of(search->combination, samples, true, search->every);
-        if (error < search->best[paths].error) {
-            search->best[paths].error = error;
-            memcpy(search->best[paths].samples, samples, sizeof samples);
-        }
+        const double work[ESTIMATOR_COUNT] = {(double)rest - part, part, (double)paths};
+        search_try(search->combination, search->every, work, &search->best[paths]);
     }
 }
 
-/* The most samples of an estimator per step of a chain: chains have half a part or more. */
+/* More than any samples of an estimator per step of a chain: of PLAN_PARTS parts chains have more than one in
+ * PLAN_PARTS of a part. */
 static double rate_most(EstimatorKind kind)
 {
-    return 2.0 * PLAN_PARTS * estimator_cost(ESTIMATOR_CHAINS) / estimator_cost(kind);
+    return PLAN_PARTS * PLAN_PARTS * estimator_cost(ESTIMATOR_CHAINS) / estimator_cost(kind);
 }
 
 void step_rates_archive(Archive *archive, StepRates *rates)
@@ -343,25 +423,72 @@ void step_rates_archive(Archive *archive, StepRates *rates)
                     "samples of a pool per step");
 }
 
+void step_rate_archive_bidirectional(Archive *archive, StepRates *rates)
+{
+    archive_doubles(archive, &rates->bidirectional, 1, (NumberRange){0.0, rate_most(ESTIMATOR_BIDIRECTIONAL)},
+                    "samples of bidirectional path tracing per step");
+}
+
+/* The best division of work for each part of bidirectional path tracing, at least one. Chains and pools divide what path
+ * tracing leaves as they do without it. */
+typedef struct BidirectionalSearch {
+    const Combination *combination;
+    size_t every;
+    double chains; /* their part of what chains and pools have together */
+    SearchBest best[PLAN_PARTS];
+} BidirectionalSearch;
+
+static void rates_of_bidirectional(void *context, size_t parts)
+{
+    BidirectionalSearch *search = context;
+    search->best[parts].error = HUGE_VAL;
+    for (size_t paths = 1; parts > 0 && parts + paths < PLAN_PARTS; ++paths) {
+        const double rest = (double)(PLAN_PARTS - parts - paths);
+        const double work[ESTIMATOR_COUNT] = {search->chains * rest, (1.0 - search->chains) * rest, (double)paths,
+                                              (double)parts};
+        search_try(search->combination, search->every, work, &search->best[parts]);
+    }
+}
+
+/* Divides work anew if that with bidirectional path tracing is better. */
+static void bidirectional_divide(Combination *combination, size_t every, SearchBest *best)
+{
+    const double chains = estimator_cost(ESTIMATOR_CHAINS) * best->samples[ESTIMATOR_CHAINS],
+                 pool = estimator_cost(ESTIMATOR_POOL) * best->samples[ESTIMATOR_POOL],
+                 least = (combination->opened ? BIDIRECTIONAL_ERROR_OPENED : BIDIRECTIONAL_ERROR) * best->error;
+    BidirectionalSearch search = {.combination = combination, .every = every, .chains = chains / (chains + pool)};
+    combination->bidirectional_better = false;
+    if (!combination->ready[ESTIMATOR_BIDIRECTIONAL])
+        return;
+    parallel_run(PLAN_PARTS, search_threads(combination), rates_of_bidirectional, &search);
+    for (size_t parts = 1; parts < PLAN_PARTS; ++parts)
+        if (search.best[parts].error < best->error && search.best[parts].error < least) {
+            *best = search.best[parts];
+            combination->bidirectional_better = true;
+        }
+}
+
 StepRates combination_rates(Combination *combination)
 {
     /* odd, so that it is no divisor of most widths */
     RatesSearch search = {.combination = combination, .every = combination_tile_count(combination) / PLAN_TILES | 1u};
     size_t best = 0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        if (!combination->ready[s])
+        if (s != ESTIMATOR_BIDIRECTIONAL && !combination->ready[s])
             return (StepRates){0};
-    parallel_run(PLAN_PARTS, combination_tile_count(combination) < PLAN_TILES ? 1 : combination->threads,
-                 rates_of_paths, &search);
+    parallel_run(PLAN_PARTS, search_threads(combination), rates_of_paths, &search);
     for (size_t paths = 1; paths < PLAN_PARTS; ++paths)
         if (search.best[paths].error < search.best[best].error)
             best = paths;
     if (best == 0)
         return (StepRates){0};
     const double *samples = search.best[best].samples;
+    memcpy(combination->best_others, samples, sizeof search.best[best].samples);
+    bidirectional_divide(combination, search.every, &search.best[best]);
     memcpy(combination->best, samples, sizeof search.best[best].samples);
     return (StepRates){.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
-                       .pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
+                       .pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS],
+                       .bidirectional = samples[ESTIMATOR_BIDIRECTIONAL] / samples[ESTIMATOR_CHAINS]};
 }
 
 double combination_alone_error(const Combination *combination)

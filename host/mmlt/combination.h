@@ -1,5 +1,6 @@
-/* Combines three estimates of a generation's picture: the Markov chains, the bootstrap pool they start from, and path
- * tracing. Path tracing is best in easy light, chains in hard light; the combination decides per tile.
+/* Combines the estimates of a generation's picture: the Markov chains, the bootstrap pool they start from, path tracing,
+ * and bidirectional path tracing where there are samples of it. Path tracing is best in easy light, chains in hard
+ * light, bidirectional path tracing where light comes from behind an opening; the combination decides per tile.
  *
  * Each tile weights the estimators in inverse proportion to their variances (Graybill and Deal 1959), as estimated from
  * earlier generations. Weights that do not depend on the generation they are applied to leave its mean unbiased, if its
@@ -8,7 +9,8 @@
  * A bright path that a pool or path tracing finds by chance would be a firefly. Each shows a path only up to a clamping
  * threshold and leaves the rest to the chains, which have many more samples of such paths: the excess (of the pool) and
  * the rare light (of path tracing). Contribution depends on the density with which an estimator makes the path, so the
- * two rests differ. The same variances determine how time is divided (combination_rates). */
+ * two rests differ. Bidirectional path tracing leaves nothing. The same variances determine how time is divided
+ * (combination_rates). */
 #ifndef TWINLIGHT_MMLT_COMBINATION_H
 #define TWINLIGHT_MMLT_COMBINATION_H
 
@@ -37,14 +39,15 @@ uint64_t combination_weights_set(Combination *combination, const double samples[
  * constant factor; all 0 until variances are known. */
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors);
 
-/* Samples of path tracing and of pools per step of a chain. */
+/* Samples of path tracing, of pools and of bidirectional path tracing per step of a chain. */
 typedef struct StepRates {
-    double paths, pool;
+    double paths, pool, bidirectional;
 } StepRates;
 
 /* Saves rates that a plan has, or restores such: those that combination_rates can find, of a pool at least
  * POOL_PER_STEP. */
-void step_rates_archive(Archive *archive, StepRates *rates);
+void step_rates_archive(Archive *archive, StepRates *rates); /* of path tracing and pools */
+void step_rate_archive_bidirectional(Archive *archive, StepRates *rates);
 
 /* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations
  * are compared with this division of work from then on. */

@@ -75,11 +75,16 @@ typedef struct Combination {
      * (or not known), TILE_PATCHES for errors that are alike. */
     double chains_correlation;
     double rare_chains, rare_paths; /* variances of rare light relative to all light, of all tiles together */
-    double best[ESTIMATOR_COUNT]; /* samples of each in the best division of work (combination_rates); 0: not known */
+    /* Samples of each in the best division of work (combination_rates), and in the best without bidirectional path
+     * tracing; 0: not known. */
+    double best[ESTIMATOR_COUNT], best_others[ESTIMATOR_COUNT];
     double weight[ESTIMATOR_COUNT], paths_rare; /* of the latest generation, mean over the tiles */
     bool hidden; /* light that path tracing cannot find may exist: of rare light it shows only what it clamps */
     bool rare_missed; /* the same, since path tracing has found significantly less rare light than the chains have, or
                          theirs is not known well enough to tell */
+    bool opened; /* light comes through openings */
+    bool bidirectional_better; /* with some bidirectional path tracing the best division of work has less error */
+    bool bidirectional_trial; /* that of the generation under way is a trial, which is not shown */
     int shown; /* for tests: 1 + the estimator with weight 1 in generations that have samples of it, or
                   SHOWN_PATHS_ALONE; 0: best weights */
 } Combination;

@@ -161,7 +161,7 @@ static double missing_spread(const Combination *combination, int s, size_t tile)
         other = light_bound_best(combination, tile, deviations);
         if (s == SERIES_EXCESS)
             own += fmax((double)sums[ESTIMATOR_CHAINS].mean[tile], (double)sums[ESTIMATOR_POOL].mean[tile]);
-        else
+        else if (s == ESTIMATOR_PATHS)
             own += (double)sums[SERIES_RARE].mean[tile];
     }
     double missing = fmax(other - own, 0.0);
@@ -265,7 +265,8 @@ void combination_variances_update(Combination *combination, const Combination *o
     tiles_sum(combination);
     stratification_apply(combination, other);
     for (int s = 0; s < SERIES_COUNT; ++s)
-        spreads_settle(combination, s);
+        if (s != ESTIMATOR_BIDIRECTIONAL || pixel_series_pictures(&combination->light[s], 0) > 0)
+            spreads_settle(combination, s);
     combination->rare_chains = relative_variance(combination, SERIES_RARE);
     combination->rare_paths = relative_variance(combination, SERIES_PATHS_RARE);
     combination_rare_update(combination);

@@ -89,15 +89,21 @@ typedef struct LayerWeights {
     double light, own, rare;
 } LayerWeights;
 
+/* Whether the estimator's film holds rare light. */
+static bool rare_left(EstimatorKind kind)
+{
+    return kind == ESTIMATOR_CHAINS || kind == ESTIMATOR_PATHS;
+}
+
 /* Path tracing shows the part paths_rare of rare light itself, which is in its light; chains add the rest. Pools and
- * chains, which have the weight that path tracing leaves, share the excess. */
+ * chains share the excess. */
 static LayerWeights layer_weights(const CombinationTile *tile, EstimatorKind kind)
 {
     double paths = tile->weight[ESTIMATOR_PATHS], by_chains = paths * (1.0 - tile->paths_rare);
     LayerWeights weights = {.light = tile->weight[kind]};
     if (kind == ESTIMATOR_CHAINS)
-        weights.own = 1.0 - paths;
-    if (kind != ESTIMATOR_POOL)
+        weights.own = 1.0 - paths - tile->weight[ESTIMATOR_BIDIRECTIONAL];
+    if (rare_left(kind))
         weights.rare = kind == ESTIMATOR_CHAINS ? by_chains : -by_chains;
     return weights;
 }
@@ -131,7 +137,7 @@ static void sums_add(const ImageAdding *adding, EstimatorSums sums, RowRange pix
 static EstimatorSums film_sums(const ImageAdding *adding)
 {
     const Film *film = adding->film;
-    return (EstimatorSums){film->light_sums, film->sums, adding->kind == ESTIMATOR_POOL ? NULL : film->rare_sums,
+    return (EstimatorSums){film->light_sums, film->sums, rare_left(adding->kind) ? film->rare_sums : NULL,
                            adding->image->light};
 }
 
@@ -140,7 +146,7 @@ static EstimatorSums film_sums_of(const ImageAdding *adding, uint segments)
     const Film *film = adding->film;
     return (EstimatorSums){film_depth_sums(film, segments, FILM_KIND_LIGHT),
                            film_depth_sums(film, segments, FILM_KIND_OWN),
-                           adding->kind == ESTIMATOR_POOL ? NULL : film_depth_sums(film, segments, FILM_KIND_RARE),
+                           rare_left(adding->kind) ? film_depth_sums(film, segments, FILM_KIND_RARE) : NULL,
                            adding->image->depths + depths_before(film, segments)};
 }
 

@@ -4,7 +4,7 @@
  *
  * Layers of the film: light_sums hold paths that all estimators make, up to the estimator's clamping threshold. Of path
  * tracing, `sums` hold direct light, and rare_sums what of the light is rare. Of chains, `sums` hold the excess and
- * rare_sums the rare light. */
+ * rare_sums the rare light. Bidirectional path tracing has all of its light in light_sums. */
 #ifndef TWINLIGHT_MMLT_COMBINED_IMAGE_H
 #define TWINLIGHT_MMLT_COMBINED_IMAGE_H
 

@@ -3,8 +3,10 @@
 #include "backend/film_sink.h"
 #include "mmlt/tuning.h"
 
-static const double COSTS[ESTIMATOR_COUNT] = {
-    [ESTIMATOR_CHAINS] = COST_CHAINS, [ESTIMATOR_POOL] = COST_POOL, [ESTIMATOR_PATHS] = COST_PATHS};
+static const double COSTS[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = COST_CHAINS,
+                                              [ESTIMATOR_POOL] = COST_POOL,
+                                              [ESTIMATOR_PATHS] = COST_PATHS,
+                                              [ESTIMATOR_BIDIRECTIONAL] = COST_BIDIRECTIONAL};
 
 double estimator_cost(EstimatorKind kind)
 {

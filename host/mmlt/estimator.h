@@ -1,7 +1,7 @@
-/* What the three estimators that share MMLT's image have in common: the Markov chains (mmlt/chains_estimator.h), the
- * bootstrap pool that they start from (mmlt/pool_estimator.h) and path tracing (mmlt/paths_estimator.h). Each runs
- * passes of its own list, one after the other into the same film; what they leave there is combined to one image
- * (mmlt/combined_image.h). */
+/* What the four estimators that share MMLT's image have in common: the Markov chains (mmlt/chains_estimator.h), the
+ * bootstrap pool that they start from (mmlt/pool_estimator.h), path tracing (mmlt/paths_estimator.h), and, where it
+ * helps, bidirectional path tracing (mmlt/bidirectional_estimator.h). Each runs passes of its own list, one after the
+ * other into the same film; what they leave there is combined to one image (mmlt/combined_image.h). */
 #ifndef TWINLIGHT_MMLT_ESTIMATOR_H
 #define TWINLIGHT_MMLT_ESTIMATOR_H
 
@@ -9,13 +9,19 @@
 #include "render/run.h"
 
 /* Index of an estimator in what there is of each: samples, weights, variances. */
-typedef enum EstimatorKind { ESTIMATOR_CHAINS, ESTIMATOR_POOL, ESTIMATOR_PATHS, ESTIMATOR_COUNT } EstimatorKind;
+typedef enum EstimatorKind {
+    ESTIMATOR_CHAINS,
+    ESTIMATOR_POOL,
+    ESTIMATOR_PATHS,
+    ESTIMATOR_BIDIRECTIONAL,
+    ESTIMATOR_COUNT
+} EstimatorKind;
 
 typedef struct Estimator {
     StepList list;
     Film *film; /* the generation's */
     bool hidden; /* its splats are not shown */
-    uint64_t samples; /* in the generation under way: steps of chains, pool samples, camera paths */
+    uint64_t samples; /* in the generation under way: steps of chains, samples of the others */
 } Estimator;
 
 /* Sets what passes whose splats go to the film know of it. */

@@ -20,6 +20,7 @@ Generation generation_at(RenderRun *run, const MmltScheme *scheme, uint index);
 #define GENERATION_RESAMPLING 0u
 #define GENERATION_POOL_PLACE 1u
 #define GENERATION_POOL_LIGHTS 2u /* and the next REPLICAS, one for each order of pixels */
+#define GENERATION_TRIAL_PLACE (GENERATION_POOL_LIGHTS + REPLICAS + 1u)
 
 /* A uniform number in (0, 1), a function of the seed, the generation's index (or another number) and the use. */
 double generation_random(const RenderRun *run, uint index, uint use);

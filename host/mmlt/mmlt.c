@@ -69,7 +69,10 @@ static bool estimators_init(Mmlt *mmlt, Error *error)
     const Guide *guide = &mmlt->guide.shown;
     Film *film = &mmlt->film;
     bool completes = !alone && !mmlt->options.shown && !render_layers_split(run->options->layers);
-    if (!paths_estimator_init(&mmlt->paths, run, film, alone, completes, guide, error))
+    bool shown = mmlt->options.shown == 0 || mmlt->options.shown == 1 + ESTIMATOR_BIDIRECTIONAL;
+    if (!paths_estimator_init(&mmlt->paths, run, film, alone, completes, guide, error) ||
+        !bidirectional_estimator_init(&mmlt->bidirectional, run, film, !alone && shown && film->depth_kinds == 0, guide,
+                                      error))
         return false;
     frame_complete(mmlt, &run->frame);
     pool_estimator_init(&mmlt->pool, run, film, alone, guide);
@@ -101,6 +104,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
         if (!combination_init(&mmlt->combinations[replica], &mmlt->film, error))
             return false;
         mmlt->combinations[replica].hidden = mmlt->run->hidden_light;
+        mmlt->combinations[replica].opened = mmlt->run->frame.openings.count > 0;
         mmlt->combinations[replica].shown = mmlt->options.shown;
         mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;
     }
@@ -128,6 +132,7 @@ void mmlt_destroy(Mmlt *mmlt)
     chains_estimator_destroy(&mmlt->chains);
     pool_estimator_destroy(&mmlt->pool);
     paths_estimator_destroy(&mmlt->paths);
+    bidirectional_estimator_destroy(&mmlt->bidirectional);
     for (int replica = 0; replica < REPLICAS; ++replica)
         combination_destroy(&mmlt->combinations[replica]);
     combined_image_destroy(&mmlt->combined);
@@ -244,6 +249,17 @@ static bool first_paths_run(Mmlt *mmlt, uint count, bool *whole, Error *error)
     return true;
 }
 
+static bool bidirectional_follows(Mmlt *mmlt, bool *whole, Error *error)
+{
+    if (!(mmlt->samples[ESTIMATOR_BIDIRECTIONAL] > 0.0))
+        return true;
+    if (!bidirectional_estimator_run(&mmlt->bidirectional, &mmlt->generation, whole, error))
+        return false;
+    if (*whole)
+        estimator_take(mmlt, ESTIMATOR_BIDIRECTIONAL);
+    return true;
+}
+
 /* Runs all passes of a generation. Later generations end with path tracing, which needs the target importance that is
  * renewed before the pool. */
 static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
@@ -253,22 +269,38 @@ static bool generation_passes(Mmlt *mmlt, uint count, bool *whole, Error *error)
         return false;
     if (chains_due(mmlt) && *whole && !chains_follow(mmlt, count, whole, error))
         return false;
+    if (*whole && !bidirectional_follows(mmlt, whole, error))
+        return false;
     return first || !*whole || paths_estimator_run(&mmlt->paths, &mmlt->generation, complete_due(mmlt), whole, error);
 }
 
 /* ---- a generation ------------------------------------------------------------------------------------------------ */
 
+static void bidirectional_begin(Mmlt *mmlt)
+{
+    bidirectional_estimator_begin(&mmlt->bidirectional, &mmlt->plan, mmlt->run,
+                                  mmlt->paths.seconds / (double)mmlt->paths.fresh);
+    plan_bidirectional_set(&mmlt->plan, mmlt->generation.index < mmlt->bidirectional.whole.forced_end, false);
+}
+
 /* Sets the samples of each estimator in a generation of `count` chains: its steps, its pool (if it has its own) and its
- * path tracing. */
+ * path tracing of both kinds. */
 static void generation_samples(Mmlt *mmlt, uint count)
 {
-    bool chains = chains_due(mmlt);
+    bool chains = chains_due(mmlt), known = mmlt->combinations[0].ready[ESTIMATOR_BIDIRECTIONAL] &&
+                                            mmlt->combinations[1].ready[ESTIMATOR_BIDIRECTIONAL];
     double *samples = mmlt->samples;
+    if (mmlt->generation.index == 1 && mmlt->paths.fresh > 0)
+        bidirectional_begin(mmlt);
     paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
     mmlt->chains.own.samples = (uint64_t)count * mmlt->options.steps; /* also if no path is long enough for any */
     samples[ESTIMATOR_CHAINS] = chains ? (double)mmlt->chains.own.samples : 0.0;
     samples[ESTIMATOR_POOL] = chains && pool_due(mmlt) ? (double)plan_pool_samples(&mmlt->plan, count) : 0.0;
     samples[ESTIMATOR_PATHS] = (double)mmlt->paths.own.samples;
+    samples[ESTIMATOR_BIDIRECTIONAL] =
+        bidirectional_estimator_plan(&mmlt->bidirectional, &mmlt->generation, &mmlt->plan, chains ? count : 0, known);
+    for (int replica = 0; replica < REPLICAS; ++replica)
+        mmlt->combinations[replica].bidirectional_trial = mmlt->bidirectional.trial > 0;
 }
 
 /* Tells how long the generation will take, which begins now. */
@@ -297,6 +329,14 @@ static void generation_begin(Mmlt *mmlt)
                              &mmlt->combinations[generation->other], mmlt->samples);
 }
 
+/* Whether the next generation has bidirectional path tracing. */
+static void bidirectional_adopt(Mmlt *mmlt)
+{
+    const Combination *replicas = mmlt->combinations;
+    plan_bidirectional_set(&mmlt->plan, mmlt->generation.index + 1 < mmlt->bidirectional.whole.forced_end,
+                           replicas[0].bidirectional_better && replicas[1].bidirectional_better);
+}
+
 /* Makes one film of the estimators: mmlt->film. Whether variances have been learnt from them. */
 static bool films_combine(Mmlt *mmlt)
 {
@@ -314,6 +354,7 @@ static bool films_combine(Mmlt *mmlt)
         return false;
     combination_variances_update(own, &mmlt->combinations[generation->other]);
     plan_learn(&mmlt->plan, generation->index, own); /* the other replica is next, and learns from this one */
+    bidirectional_adopt(mmlt);
     return true;
 }
 
@@ -358,6 +399,7 @@ static void generation_count(Mmlt *mmlt, uint count, uint64_t work)
         pool_estimator_count(&mmlt->pool, generation);
     if (chains_due(mmlt) && chains_estimator_alive(&mmlt->chains, generation))
         chains_estimator_count(&mmlt->chains, generation, &mmlt->pool, count);
+    mmlt->plan.owed_bidirectional = paths_estimator_owed(&mmlt->bidirectional.whole);
     plan_count(&mmlt->plan, work, paths_estimator_owed(&mmlt->paths));
     mmlt->run->done = mmlt->plan.done;
 }

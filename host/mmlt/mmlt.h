@@ -1,8 +1,9 @@
-/* A Metropolis rendering under way: three estimators, what guides them, what combines them, and what is planned. Its
+/* A Metropolis rendering under way: its estimators, what guides them, what combines them, and what is planned. Its
  * main loop is in mmlt/integrator_mmlt.c. */
 #ifndef TWINLIGHT_MMLT_MMLT_H
 #define TWINLIGHT_MMLT_MMLT_H
 
+#include "mmlt/bidirectional_estimator.h"
 #include "mmlt/chains_estimator.h"
 #include "mmlt/combined_image.h"
 #include "mmlt/guide.h"
@@ -17,6 +18,7 @@ typedef struct Mmlt {
     ChainsEstimator chains;
     PoolEstimator pool;
     PathsEstimator paths;
+    BidirectionalEstimator bidirectional;
     Film film; /* of the estimator that runs; at the end, of the generation */
     Combination combinations[REPLICAS];
     CombinedImage combined;
@@ -50,9 +52,9 @@ bool mmlt_pilot_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 /* Runs a pool and resamples `count` chains from it. *whole: set to false if stopped before the end. */
 bool mmlt_seeds_run(Mmlt *mmlt, uint count, bool *whole, Error *error);
 
-/* Runs a generation (a pool, `count` chains from it, path tracing; 0: path tracing alone) and adds their combination
- * to the film. All or nothing: a generation that is stopped is discarded, except that of the first the finished path
- * tracing samples are kept. */
+/* Runs a generation (a pool, `count` chains from it, path tracing, and bidirectional path tracing if it is planned; 0:
+ * path tracing alone) and adds their combination to the film. All or nothing: a generation that is stopped is discarded,
+ * except that of the first the finished path tracing samples are kept. */
 bool mmlt_generation_run(Mmlt *mmlt, uint count, Error *error);
 
 /* The seconds that the next generation takes with any number of chains, as far as the latest one tells: path tracing in

@@ -23,6 +23,8 @@ static void mmlt_archive(Archive *archive, Mmlt *mmlt)
         paths_change_archive(archive, &mmlt->changes[replica], mmlt->combined.values);
     if (!mmlt->paths.completes)
         mmlt_changes_forget(mmlt);
+    plan_archive_bidirectional(archive, &mmlt->plan);
+    bidirectional_estimator_archive(archive, &mmlt->bidirectional);
     ARCHIVE_FIELD(archive, mmlt->run->chains);
     ARCHIVE_FIELD(archive, mmlt->seconds);
     if (!archive->saves)
@@ -62,6 +64,7 @@ static void pilot_archive(void *context, Archive *archive)
     Mmlt *mmlt = context;
     const Plan plan = mmlt->plan;
     const PathsEstimator paths = mmlt->paths;
+    const BidirectionalEstimator bidirectional = mmlt->bidirectional;
     const PoolEstimator pool = mmlt->pool;
     const ChainStatistics chains = mmlt->run->chains;
     const Generation generation = mmlt->generation;
@@ -71,6 +74,7 @@ static void pilot_archive(void *context, Archive *archive)
     if (!archive->failed) /* otherwise they may be any numbers */
         plan_rates_set(&mmlt->plan, rates);
     mmlt->paths = paths;
+    mmlt->bidirectional = bidirectional;
     mmlt->pool = pool;
     chains_estimator_clear(&mmlt->chains);
     mmlt->run->chains = chains;

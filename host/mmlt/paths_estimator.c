@@ -12,14 +12,20 @@
 #include <math.h>
 
 /* Makes the estimator's list for `frame`, which is complete then. */
-static bool list_make(Estimator *estimator, FrameParams *frame, const RenderRun *run, const Guide *guide, Error *error)
+static bool list_make(Estimator *estimator, FrameParams *frame, const Integrator *integrator, const RenderRun *run,
+                      const Guide *guide, Error *error)
 {
-    frame->path.strategies = integrator_pt()->strategies;
+    frame->path.strategies = integrator->strategies;
     estimator_film_params(estimator, &frame->film);
-    bool made = integrator_pt()->list(frame, &estimator->list, error);
+    bool made = integrator->list(frame, &estimator->list, error);
     estimator->list.guide = guide;
     estimator->list.photons = &run->photons;
     return made;
+}
+
+static uint sequences_of(const RenderRun *run)
+{
+    return render_layers_compare_halves(run->options->layers) ? REPLICAS : 1;
 }
 
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
@@ -29,13 +35,29 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                               .frame = run->frame,
                               .complete = {.film = film},
                               .complete_frame = run->frame,
-                              .completes = completes};
-    paths->sequences = render_layers_compare_halves(run->options->layers) ? REPLICAS : 1;
+                              .completes = completes,
+                              .combined = !direct_only,
+                              .forced_end = PATHS_FORCED,
+                              .forced_each = 1,
+                              .sequences = sequences_of(run)};
     paths->frame.partition.split_direct = !direct_only;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
-    return list_make(&paths->own, &paths->frame, run, guide, error) &&
-           (!completes || list_make(&paths->complete, &paths->complete_frame, run, guide, error));
+    return list_make(&paths->own, &paths->frame, integrator_pt(), run, guide, error) &&
+           (!completes || list_make(&paths->complete, &paths->complete_frame, integrator_pt(), run, guide, error));
+}
+
+bool paths_estimator_init_bidirectional(PathsEstimator *paths, const RenderRun *run, Film *film, const Guide *guide,
+                                        Error *error)
+{
+    *paths = (PathsEstimator){.own = {.film = film},
+                              .frame = run->frame,
+                              .bidirectional = true,
+                              .combined = true,
+                              .sequences = sequences_of(run)};
+    paths->frame.path.min_depth = CHAIN_DEPTH_MIN;
+    paths->frame.scene.guide_count = 0;
+    return list_make(&paths->own, &paths->frame, integrator_bdpt(), run, guide, error);
 }
 
 void paths_estimator_destroy(PathsEstimator *paths)
@@ -67,9 +89,11 @@ void paths_estimator_archive(Archive *archive, PathsEstimator *paths)
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more)
 {
     uint64_t most = film_samples_most(paths->own.film->reconstruction);
-    uint64_t target = (uint64_t)fmin(rint(paths->wanted + more), (double)most), first = (uint64_t)generation->index + 1;
-    if (generation->index < PATHS_FORCED && target < first)
-        target = first;
+    uint64_t target = (uint64_t)fmin(rint(paths->wanted + more), (double)most);
+    if (generation->index >= paths->forced_first && generation->index < paths->forced_end) {
+        uint64_t forced = (uint64_t)(generation->index - paths->forced_first + 1) * paths->forced_each;
+        target = target < forced ? forced : target;
+    }
     return target > paths->done ? target - paths->done : 0;
 }
 
@@ -78,7 +102,7 @@ void paths_estimator_plan(PathsEstimator *paths, const Generation *generation, d
     paths->fresh = paths_estimator_due(paths, generation, more);
     double all = (double)(paths->done + paths->fresh);
     /* Later generations do not make less for what the first ones had to make, unless nothing is learnt of it. */
-    bool forced = paths->frame.partition.split_direct != 0u && paths->wanted + more < all - 0.5;
+    bool forced = paths->combined && paths->wanted + more < all - 0.5;
     paths->wanted = forced ? all : paths->wanted + more;
     paths->own.samples = paths->fresh * generation->run->crop_pixels;
 }
@@ -150,16 +174,19 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
         (!kernels_prepare(&paths->own, paths->frame, run, error) ||
          (paths->completes && !kernels_prepare(&paths->complete, paths->complete_frame, run, error))))
         return false;
-    double begin = timing_now();
+    double begin = timing_now(), *seconds = &run->chains.direct_seconds;
     if (!passes_run(paths, generation, complete, whole, error))
         return false;
-    if (*whole && paths->frame.partition.split_direct != 0u)
+    if (*whole && paths->bidirectional)
+        film_light_gather(film, paths->fresh);
+    else if (*whole && paths->combined)
         film_normalize(film, paths->fresh);
     if (*whole && complete)
         film->complete_samples = paths->own.samples;
     paths_estimator_count(paths, generation);
     paths->seconds = timing_now() - begin;
-    run->chains.direct_seconds += paths->seconds;
+    seconds = paths->bidirectional ? &run->chains.bidirectional_seconds : seconds;
+    *seconds += paths->seconds;
     return true;
 }
 

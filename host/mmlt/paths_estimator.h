@@ -1,4 +1,5 @@
-/* Path tracing beside the chains: easy light of all lengths, and all direct light. */
+/* Whole samples of every pixel beside the chains. Path tracing: easy light of all lengths, and all direct light. And
+ * bidirectional path tracing: all light of the paths that chains make (mmlt/bidirectional_estimator.h). */
 #ifndef TWINLIGHT_MMLT_PATHS_ESTIMATOR_H
 #define TWINLIGHT_MMLT_PATHS_ESTIMATOR_H
 
@@ -11,6 +12,10 @@ typedef struct PathsEstimator {
     Estimator complete; /* all light together, if `completes`: it takes less time */
     FrameParams complete_frame;
     bool completes;
+    bool bidirectional; /* by bidirectional path tracing: all of its light is in the film's light_sums, at last */
+    bool combined; /* with the other estimators, which learn from it; otherwise it shows what these do not make */
+    /* Generations forced_first ... forced_end - 1 have so many samples of every pixel each, whatever is wanted. */
+    uint forced_first, forced_end, forced_each;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
     uint sequences; /* stratified ones: 1, or one for even and one for odd generations, so that the layers' halves are
@@ -26,13 +31,18 @@ typedef struct PathsEstimator {
  * failure. */
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
                           const Guide *guide, Error *error);
+
+/* The same of bidirectional path tracing, which no generation has before mmlt/bidirectional_estimator.h says so. */
+bool paths_estimator_init_bidirectional(PathsEstimator *paths, const RenderRun *run, Film *film, const Guide *guide,
+                                        Error *error);
+
 void paths_estimator_destroy(PathsEstimator *paths);
 
 /* Saves what the next generation needs, or restores it. */
 void paths_estimator_archive(Archive *archive, PathsEstimator *paths);
 
 /* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there
- * have been about as many as wanted. Generation g < PATHS_FORCED ends with at least g + 1. */
+ * have been about as many as wanted. After n of the generations that are forced there are at least n times forced_each. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */

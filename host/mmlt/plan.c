@@ -9,44 +9,57 @@ static double steps_of(const Plan *plan, uint chains)
     return (double)((uint64_t)chains * plan->options->steps);
 }
 
-/* The work of a chain in a generation, with its part of the pool, and `paths` samples of path tracing per step. */
-static double chain_work_with(const Plan *plan, double paths)
+/* The work of a chain in a generation, with its part of the pool, and so many samples of path tracing and of
+ * bidirectional path tracing per step. */
+static double chain_work_with(const Plan *plan, double paths, double bidirectional)
 {
     double steps = (double)plan->options->steps;
     const double samples[ESTIMATOR_COUNT] = {[ESTIMATOR_CHAINS] = steps,
                                              [ESTIMATOR_POOL] = plan->scheme->renews ? steps * plan->rates.pool : 0.0,
-                                             [ESTIMATOR_PATHS] = steps * paths};
+                                             [ESTIMATOR_PATHS] = steps * paths,
+                                             [ESTIMATOR_BIDIRECTIONAL] = steps * bidirectional};
     return estimators_work(samples);
 }
 
 static double chain_work(const Plan *plan)
 {
-    return chain_work_with(plan, plan->rates.paths);
+    return chain_work_with(plan, plan->rates.paths, plan->rates.bidirectional);
 }
 
-/* Chains that the remaining work is enough for, with their part of path tracing. */
+/* Chains that the remaining work is enough for, with their part of path tracing of both kinds. */
 static double chains_left(const Plan *plan)
 {
     return (double)(plan->total - plan->done) / chain_work(plan);
 }
 
-/* The same for the generations from `index` on, of which the first ones have path tracing at any rate: without it, if
- * what is left of it is no whole sample of every pixel. */
-static double chains_left_from(const Plan *plan, uint index)
+/* Whether `rate` samples per step of `chains` chains, and what is owed of before, are a whole sample of every pixel. */
+static bool whole_sample(const Plan *plan, double owed, double chains, double rate)
 {
-    double chains = chains_left(plan);
-    bool paths = index < PATHS_FORCED || rint(plan->owed + chains * (double)plan->options->steps * plan->rates.paths /
-                                                               (double)plan->pixels) >= 1.0;
-    return paths ? chains : (double)(plan->total - plan->done) / chain_work_with(plan, 0.0);
+    return rint(owed + chains * (double)plan->options->steps * rate / (double)plan->pixels) >= 1.0;
 }
 
-/* Chains that go with one path tracing sample of every pixel, unless that exceeds WHOLE_SAMPLE_PART of the work so far:
- * generations without path tracing show easy light badly. */
+/* The same for the generations from `index` on, of which the first ones have path tracing at any rate: without it, if
+ * what is left of it is no whole sample of every pixel, and without bidirectional path tracing in the same way. */
+static double chains_left_from(const Plan *plan, uint index)
+{
+    const StepRates *rates = &plan->rates;
+    double chains = chains_left(plan);
+    bool paths = index < PATHS_FORCED || whole_sample(plan, plan->owed, chains, rates->paths),
+         bidirectional = whole_sample(plan, plan->owed_bidirectional, chains, rates->bidirectional);
+    return (double)(plan->total - plan->done) /
+           chain_work_with(plan, paths ? rates->paths : 0.0, bidirectional ? rates->bidirectional : 0.0);
+}
+
+/* Chains that go with one sample of every pixel by path tracing, and one by bidirectional path tracing if it has any,
+ * unless that exceeds a part of the work so far: generations without them show easy light badly. */
 static uint chains_of_sample(const Plan *plan)
 {
-    double whole = (double)plan->pixels / (plan->rates.paths * (double)plan->options->steps);
-    double most = WHOLE_SAMPLE_PART * (double)plan->done / chain_work(plan);
-    return plan->options->chains_only ? 0 : (uint)fmin(fmin(whole, most), 0x1p26);
+    const StepRates *rates = &plan->rates;
+    double whole = (double)plan->pixels / (double)plan->options->steps, work = (double)plan->done / chain_work(plan);
+    double paths = fmin(whole / rates->paths, WHOLE_SAMPLE_PART * work), bidirectional = 0.0;
+    if (rates->bidirectional > 0.0)
+        bidirectional = fmin(whole / rates->bidirectional, WHOLE_BIDIRECTIONAL_PART * work);
+    return plan->options->chains_only ? 0 : (uint)fmin(fmax(paths, bidirectional), 0x1p26);
 }
 
 /* Plans the first generation, by the present rates. */
@@ -69,6 +82,7 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
                    .pixels = pixels,
                    .rates = {.pool = POOL_PER_STEP, .paths = options->chains_only ? PATHS_DIRECT : PATHS_FIRST},
                    .total = work > 0 ? work : UINT64_MAX / 2,
+                   .bidirectional_most = HUGE_VAL,
                    .timed = work == 0};
     first_plan(plan);
 }
@@ -91,12 +105,40 @@ void plan_archive(Archive *archive, Plan *plan)
     archive_doubles(archive, &plan->alone_work, 1, (NumberRange){0.0, 0x1p80}, "the work of path tracing alone");
 }
 
+void plan_archive_bidirectional(Archive *archive, Plan *plan)
+{
+    step_rate_archive_bidirectional(archive, &plan->rates);
+    archive_flags(archive, &plan->bidirectional_first, 1, "whether bidirectional path tracing comes first");
+}
+
+/* Raises the rate of bidirectional path tracing so that it has BIDIRECTIONAL_FIRST of the work. */
+static void bidirectional_raise(Plan *plan)
+{
+    StepRates *rates = &plan->rates;
+    const double others[ESTIMATOR_COUNT] = {
+        [ESTIMATOR_CHAINS] = 1.0, [ESTIMATOR_POOL] = rates->pool, [ESTIMATOR_PATHS] = rates->paths};
+    double least = BIDIRECTIONAL_FIRST / (1.0 - BIDIRECTIONAL_FIRST) * estimators_work(others) /
+                   estimator_cost(ESTIMATOR_BIDIRECTIONAL);
+    if (plan->bidirectional_first)
+        rates->bidirectional = fmax(rates->bidirectional, least);
+}
+
+void plan_bidirectional_set(Plan *plan, bool first, bool better)
+{
+    plan->bidirectional_first = first;
+    if (!better)
+        plan->rates.bidirectional = 0.0;
+    bidirectional_raise(plan);
+}
+
 void plan_learn(Plan *plan, uint index, Combination *combination)
 {
     StepRates rates = combination_rates(combination);
     if (!(rates.paths > 0.0) || index % 2 == 0)
         return;
-    plan->rates = (StepRates){.paths = rates.paths, .pool = fmax(rates.pool, POOL_PER_STEP)};
+    plan->rates = rates;
+    plan->rates.pool = fmax(rates.pool, POOL_PER_STEP);
+    bidirectional_raise(plan);
     plan->easy = combination_alone_error(combination) < ALONE_ERROR;
 }
 
@@ -111,11 +153,30 @@ void plan_count(Plan *plan, uint64_t work, double owed)
         plan->alone_work = plan->easy ? plan->alone_work + ALONE_WORK * (double)work : 0.0;
 }
 
+/* The work of a sample of every pixel by bidirectional path tracing. */
+static double bidirectional_work(const Plan *plan)
+{
+    return estimator_cost(ESTIMATOR_BIDIRECTIONAL) * (double)plan->pixels;
+}
+
+/* Such samples of the next generation. */
+static double bidirectional_due(const Plan *plan)
+{
+    double samples = rint(plan->owed_bidirectional + plan_bidirectional_samples(plan, plan->chains));
+    return plan->rates.bidirectional > 0.0 ? fmax(samples, plan->bidirectional_first ? 1.0 : 0.0) : 0.0;
+}
+
+/* The work of the next generation's chains with their part of the pool and of path tracing. */
+static double next_chains_work(const Plan *plan)
+{
+    return chain_work_with(plan, plan->rates.paths, 0.0) * plan->chains;
+}
+
 /* The work of the next generation. */
 static double next_work(const Plan *plan)
 {
     return plan->alone > 0.0 ? estimator_cost(ESTIMATOR_PATHS) * plan->alone * (double)plan->pixels
-                             : chain_work(plan) * plan->chains;
+                             : next_chains_work(plan) + bidirectional_due(plan) * bidirectional_work(plan);
 }
 
 /* Whole samples of every pixel that path tracing may make alone in each generation of a pair. */
@@ -163,6 +224,7 @@ void plan_next(Plan *plan, uint index, double seconds, double elapsed)
 {
     uint most = plan->options->chains, whole = chains_of_sample(plan), next = plan->chains;
     bool after_alone = plan->alone > 0.0;
+    plan->bidirectional_most = HUGE_VAL;
     if (!plan->scheme->grows || plan->done >= plan->total)
         return;
     if (index % 2 == 0)
@@ -205,6 +267,16 @@ static bool alone_fit(Plan *plan, double seconds, double left)
     return plan->alone > 0.0;
 }
 
+/* Fits the next generation into `work`: whole samples by bidirectional path tracing first. */
+static void chains_fit(Plan *plan, double work)
+{
+    double due = fmin(bidirectional_due(plan), floor(work / bidirectional_work(plan))),
+           part = (work - due * bidirectional_work(plan)) / next_chains_work(plan);
+    if (plan->rates.bidirectional > 0.0)
+        plan->bidirectional_most = due;
+    plan->chains = (uint)fmax(plan->chains * fmin(part, 1.0), 1.0);
+}
+
 bool plan_fit(Plan *plan, double seconds, double least, double left, double limit)
 {
     if (left > 0.0 && alone_fit(plan, seconds, left))
@@ -213,7 +285,7 @@ bool plan_fit(Plan *plan, double seconds, double least, double left, double limi
     if (left <= 0.0 || (plan->scheme->grows && (left < LAST_PART * expected || least > left + LATE_PART * limit)))
         return false;
     if (plan->scheme->grows && left < expected)
-        plan->chains = (uint)fmax(plan->chains * (left / expected), 1.0);
+        chains_fit(plan, left / expected * next_work(plan));
     return true;
 }
 
@@ -238,8 +310,16 @@ double plan_paths_samples(const Plan *plan, uint chains)
     if (plan->alone > 0.0)
         return plan->alone;
     if (plan->scheme->grows) {
-        double left = (double)plan->total - (double)plan->done - (double)chains * chain_work_with(plan, 0.0);
+        double left = (double)plan->total - (double)plan->done -
+                      (double)chains * chain_work_with(plan, 0.0, plan->rates.bidirectional);
         samples = fmin(samples, fmax(left, 0.0) / estimator_cost(ESTIMATOR_PATHS));
     }
     return samples / (double)plan->pixels;
+}
+
+double plan_bidirectional_samples(const Plan *plan, uint chains)
+{
+    double left = (double)(plan->total - plan->done) / estimator_cost(ESTIMATOR_BIDIRECTIONAL),
+           samples = fmin(plan->rates.bidirectional * steps_of(plan, chains), left) / (double)plan->pixels;
+    return fmin(samples, plan->bidirectional_most - plan->owed_bidirectional);
 }

@@ -1,5 +1,5 @@
-/* What runs next, and for how long: the sizes of generations, and how many samples of the pool and of path tracing go
- * with a step of a chain. */
+/* What runs next, and for how long: the sizes of generations, and how many samples of the pool, of path tracing
+ * and of bidirectional path tracing go with a step of a chain. */
 #ifndef TWINLIGHT_MMLT_PLAN_H
 #define TWINLIGHT_MMLT_PLAN_H
 
@@ -12,16 +12,20 @@ typedef struct Plan {
     const MmltScheme *scheme;
     uint64_t pixels;
     StepRates rates; /* at present */
+    bool bidirectional_first; /* bidirectional path tracing has at least BIDIRECTIONAL_FIRST of the work */
     uint64_t total; /* estimators_work that is wanted */
     bool timed; /* `total` is no limit: the time is */
     uint64_t done, last; /* estimators_work in all (what --samples and progress count) and of the latest generation */
-    double owed; /* samples of path tracing per pixel that are due, which rounding has left to later generations */
+    /* Samples per pixel that are due, which rounding has left to later generations: of path tracing, and of
+     * bidirectional path tracing. */
+    double owed, owed_bidirectional;
+    double bidirectional_most; /* samples of a pixel by bidirectional path tracing in the next generation */
     uint width; /* of the backend (BackendStatistics.width); 0 until set */
     uint chains; /* in the next generation that has any */
     bool easy; /* path tracing alone does nearly as well as the best division of work */
     double alone; /* samples per pixel of the next generation if it is path tracing alone; 0: it has chains */
     double alone_work; /* estimators_work that path tracing may do alone before the next generation with chains */
-    double planned; /* work of a chain, with its part of pool and path tracing, by the rates of the latest generation */
+    double planned; /* work of a chain, with its part of the others, by the rates of the latest generation */
 } Plan;
 
 /* Plans the first generation: few chains, for an early image, and at most half of the work. work: that is wanted
@@ -32,11 +36,16 @@ void plan_init(Plan *plan, const ChainOptions *options, const MmltScheme *scheme
 void plan_rates_set(Plan *plan, StepRates rates);
 
 /* Saves what was learnt and done, or restores it: not the limit, which may be another one. */
-void plan_archive(Archive *archive, Plan *plan);
+void plan_archive(Archive *archive, Plan *plan); /* but for bidirectional path tracing */
+void plan_archive_bidirectional(Archive *archive, Plan *plan);
 
 /* Adopts the best rates by what is known after generation `index`; no change until variances are known, nor between the
  * two generations of a pair. */
 void plan_learn(Plan *plan, uint index, Combination *combination);
+
+/* The part of bidirectional path tracing is at least BIDIRECTIONAL_FIRST if it comes first, now and whenever rates are
+ * adopted, and otherwise none unless it is better. */
+void plan_bidirectional_set(Plan *plan, bool first, bool better);
 
 /* Counts a generation's work. owed: Plan.owed after it. */
 void plan_count(Plan *plan, uint64_t work, double owed);
@@ -69,5 +78,8 @@ uint plan_pool_samples(const Plan *plan, uint chains);
 /* Samples of path tracing per pixel for `chains` chains: by the rates, but no more than the work that is left
  * allows. Of path tracing alone, with `chains` 0: Plan.alone. */
 double plan_paths_samples(const Plan *plan, uint chains);
+
+/* The same of bidirectional path tracing. */
+double plan_bidirectional_samples(const Plan *plan, uint chains);
 
 #endif

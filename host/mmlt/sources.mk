@@ -1,5 +1,6 @@
 libtwinlight_host_la_SOURCES += \
 	host/mmlt/bad_chains.c host/mmlt/bad_chains.h \
+	host/mmlt/bidirectional_estimator.c host/mmlt/bidirectional_estimator.h \
 	host/mmlt/chain_groups.c host/mmlt/chain_groups.h \
 	host/mmlt/chain_list.c host/mmlt/chain_list.h \
 	host/mmlt/chain_population.c host/mmlt/chain_population.h \

@@ -57,8 +57,10 @@
 #define GROWTH_FREE 1.25
 #define GROWTHS 3
 
-/* ... or this much if that allows a path tracing sample of every pixel. */
+/* ... or this much if that allows a path tracing sample of every pixel, or one of bidirectional path tracing where that
+ * is better. */
 #define WHOLE_SAMPLE_PART 0.25
+#define WHOLE_BIDIRECTIONAL_PART 0.5
 
 /* The last generation is fitted into the time that is left, if that is more than this fraction of what it would
  * take. */
@@ -84,6 +86,30 @@
 #define COST_CHAINS 1.2
 #define COST_POOL 4.0
 #define COST_PATHS 1.0
+#define COST_BIDIRECTIONAL 3.0
+
+/* ---- bidirectional path tracing ---------------------------------------------------------------------------------- */
+
+/* Where light comes through openings: so many generations after the first one have a sample of every pixel each, if
+ * that takes no more than BIDIRECTIONAL_PART of the rendering, or two, if these take no more than
+ * BIDIRECTIONAL_PART_EACH, and of their work it has at least BIDIRECTIONAL_FIRST. By then its variance and those of the
+ * others are known well enough to compare them. */
+#define BIDIRECTIONAL_FORCED 6u
+#define BIDIRECTIONAL_PART 0.4
+#define BIDIRECTIONAL_PART_EACH 0.25
+#define BIDIRECTIONAL_FIRST 0.75
+
+/* Elsewhere a trial tells its variance, unless light is so easy that path tracing may go on alone: after the first
+ * PATHS_FORCED generations this part of the work so far, at most TRIAL_SAMPLES of a pixel, in each generation until both
+ * replicas know it. */
+#define TRIAL_PART 0.04
+#define TRIAL_SAMPLES 0.25
+
+/* It goes on where both replicas expect the error to be less than this part of that without it: if light comes through
+ * openings, or if not. More gives it scenes where path tracing alone would do, less withholds it from others;
+ * docs/TUNING.md. */
+#define BIDIRECTIONAL_ERROR_OPENED 0.95
+#define BIDIRECTIONAL_ERROR 0.75
 
 /* ---- what a combination learns ---------------------------------------------------------------------------------- */
 
@@ -133,10 +159,11 @@
  * docs/TUNING.md. */
 #define FIRST_PATHS 0.25
 
-/* Weight of a generation's picture per work: until variances are known, and at most; 1 if its work is divided as is
- * best. */
+/* Weight of a generation's picture per work: until variances are known, and at most, without and with bidirectional
+ * path tracing; 1 if its work is divided as is best without. */
 #define FIRST_WORTH 0.25
 #define WORTH_MOST 2.0
+#define WORTH_BIDIRECTIONAL_MOST 16.0
 
 /* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this
  * many times the error of the best division of work, which takes longer; docs/TUNING.md. */

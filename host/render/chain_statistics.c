@@ -58,8 +58,9 @@ void chain_statistics_add(ChainStatistics *sum, const ChainStatistics *other)
     sum->pool_seconds += other->pool_seconds;
     sum->chain_seconds += other->chain_seconds;
     sum->direct_seconds += other->direct_seconds;
+    sum->bidirectional_seconds += other->bidirectional_seconds;
     sum->least_distinct = smaller_known(sum->least_distinct, other->least_distinct);
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < CHAIN_WEIGHTS; ++i)
         sum->weights[i] += other->weights[i];
     for (int depth = 0; depth < CHAIN_DEPTHS; ++depth) {
         sum->starts[depth] += other->starts[depth];

@@ -9,6 +9,7 @@
 
 #define CHAIN_KINDS 4 /* MUTATION_* */
 #define CHAIN_DEPTHS 32
+#define CHAIN_WEIGHTS 4
 
 typedef struct ChainStatistics {
     uint64_t pool_samples, seeds, steps;
@@ -18,9 +19,10 @@ typedef struct ChainStatistics {
     /* smallest fraction of a generation's starting paths that were distinct; 0: there were none */
     double least_distinct;
     double r_hat[CHAIN_DEPTHS]; /* over groups of chains (mmlt/chain_groups.h); 0: not known */
-    double pool_seconds, chain_seconds, direct_seconds;
-    /* of chains, pool and path tracing in the latest generation's picture (mmlt/combination.h); 0: not combined */
-    double weights[3];
+    double pool_seconds, chain_seconds, direct_seconds, bidirectional_seconds;
+    /* of chains, pool, path tracing and bidirectional path tracing in the latest generation's picture
+     * (mmlt/combination.h); 0: not combined */
+    double weights[CHAIN_WEIGHTS];
 } ChainStatistics;
 
 /* The starting paths of a generation's chains. A path of large weight starts several. */

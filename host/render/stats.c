@@ -76,6 +76,7 @@ void stats_chain_counts(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "pool_seconds", chains->pool_seconds);
     json_number(json, "chain_seconds", chains->chain_seconds);
     json_number(json, "direct_seconds", chains->direct_seconds);
+    json_number(json, "bidirectional_seconds", chains->bidirectional_seconds);
 }
 
 /* JSON key for paths of `depth` segments. */
@@ -121,6 +122,7 @@ static void stats_chains(JsonWriter *json, const ChainStatistics *chains)
     json_number(json, "chains", chains->weights[0]);
     json_number(json, "pool", chains->weights[1]);
     json_number(json, "paths", chains->weights[2]);
+    json_number(json, "bidirectional", chains->weights[3]);
     json_object_end(json);
     json_object_begin(json, "acceptance");
     for (int kind = 0; kind < CHAIN_KINDS; ++kind) {

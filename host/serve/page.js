@@ -2,7 +2,8 @@
 // Shows a rendering: asks for its status every half second, and for the pixels of a layer when they are new.
 const at = id => document.getElementById(id), page = document.body;
 const canvas = at('canvas'), frame = at('frame'), sheet = document.createElement('canvas');
-const SHARES = [['chains', 'chains', '#c9a86a'], ['pool', 'pool', '#6f9bb5'], ['paths', 'path tracing', '#7f9f7f']];
+const SHARES = [['chains', 'chains', '#c9a86a'], ['pool', 'pool', '#6f9bb5'], ['paths', 'path tracing', '#7f9f7f'],
+  ['bidirectional', 'bidirectional path tracing', '#a985a9']];
 let status = null, pixels = null, faults = 0, zoom = 0, centre = [0.5, 0.5]; // zoom: screen per picture pixel; 0: fits
 const views = {}; // exposure of each layer
 

@@ -13,7 +13,7 @@ typedef struct DeviceStatus {
 typedef struct RenderStatus {
     RenderProgress progress;
     double samples_per_pixel;
-    double weights[3]; /* ChainStatistics.weights */
+    double weights[CHAIN_WEIGHTS]; /* ChainStatistics.weights */
     size_t device_count;
     DeviceStatus devices[BACKEND_GROUP_MAX];
     bool ended;

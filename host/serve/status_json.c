@@ -42,12 +42,13 @@ static void devices_write(JsonWriter *json, const RenderStatus *status)
     json_array_end(json);
 }
 
-static void weights_write(JsonWriter *json, const double weights[3])
+static void weights_write(JsonWriter *json, const double weights[CHAIN_WEIGHTS])
 {
     json_object_begin(json, "weights");
     json_number(json, "chains", weights[0]);
     json_number(json, "pool", weights[1]);
     json_number(json, "paths", weights[2]);
+    json_number(json, "bidirectional", weights[3]);
     json_object_end(json);
 }
 

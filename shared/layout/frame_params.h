@@ -60,7 +60,8 @@ typedef struct FilmParams {
 /* Paths of any integrator, and MIS. */
 typedef struct PathParams {
     uint max_depth; /* largest depth of a path, >= 1 */
-    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths are left to another */
+    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths, and if it is more than 1 what media
+                       emit, are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
     float roulette_scale; /* a walk survives with this times its throughput, relative to that with which it began */
     uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */

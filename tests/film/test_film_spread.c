@@ -231,6 +231,39 @@ START_TEST(test_normalized)
 }
 END_TEST
 
+/* film_light_gather adds the pixels' own samples to what came from the light: their mean times their number whatever
+ * lies near a pixel, or as they are. Nothing of them is left, and full sums are full. */
+START_TEST(test_gathered)
+{
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
+    const uint samples = 2;
+    LightFixture f;
+    if (signed_filter(s))
+        return;
+    for (int divides = 0; divides < 2; ++divides) {
+        Film film;
+        setup(&f, s, RECONSTRUCTION_SPLAT, &film);
+        samples_add(&f, &film, SPLAT_SAMPLE, samples, 0, vec3(3.0f, 1.0f, 1.0f));
+        int64_t own[PIXELS], light[PIXELS];
+        for (int i = 0; i < PIXELS; ++i) {
+            own[i] = film.sums[3 * i];
+            film.light_sums[3 * i] = light[i] = (int64_t)(i + 1) << 30;
+        }
+        film.sums[3] = (int64_t)SUM_FULL;
+        film.threads = 1 + _i % 3;
+        film_light_gather(&film, divides ? samples : 0);
+        for (int i = 0; i < PIXELS; ++i) {
+            double expected = (double)light[i] + (divides ? 3.0 * samples * 0x1p30 : (double)own[i]);
+            if (i != 1)
+                TEST_NEAR((double)film.light_sums[3 * i] / expected, 1.0, 1e-6);
+            TEST_TRUE(film.sums[3 * i] == 0 && film_count(&film, (size_t)i) == 0);
+        }
+        TEST_TRUE(film.light_sums[3] == (int64_t)SUM_FULL);
+        teardown(&f, &film);
+    }
+}
+END_TEST
+
 /* What is left of the variance along an axis: the integral of f^2 at every pixel, where a draw has
  * that of f times the sum of all pixels' f. */
 static double variance_left(const FilmAxis *axis)
@@ -410,6 +443,7 @@ TCase *film_spread_tcase(void)
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_shares, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_gathered, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_normalized, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_normalized_merge);
     tcase_add_test(tcase, test_merge);

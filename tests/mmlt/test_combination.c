@@ -149,6 +149,8 @@ START_TEST(test_blind)
                       _i == ESTIMATOR_POOL ? 0.0 : 1.0);
         estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, _i == ESTIMATOR_PATHS ? 0.0 : 1.0,
                       _i == ESTIMATOR_PATHS ? 0.0 : 1.0);
+        if (_i == ESTIMATOR_BIDIRECTIONAL)
+            estimator_set(&estimators, ESTIMATOR_BIDIRECTIONAL, 1.0, 0.0, 0.0);
         generation(&estimators);
     }
     printf("a blind estimator's weight: %.5f\n", estimators.combination.weight[_i]);
@@ -233,7 +235,7 @@ START_TEST(test_paths_kept)
         for (size_t i = 0; i < 3 * PIXELS && g != 2; ++i)
             change[i] += (double)films[ESTIMATOR_PATHS].light_sums[i];
         combined_image_begin(&image, &estimators.combination, &estimators.combination, samples);
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s)
             combined_image_take(&image, (EstimatorKind)s, &films[s]);
         combined_image_finish(&image, &films[ESTIMATOR_PATHS]);
         for (size_t i = 0; i < 3 * PIXELS && g != 2; ++i)
@@ -256,7 +258,7 @@ START_TEST(test_beside)
     Estimators estimators;
     estimators_init(&estimators);
     for (int g = 0; g < 20; ++g) {
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s)
             estimator_set(&estimators, s, 1.0, 1.0, 1.0);
         if (g % 4 == 0)
             estimators.films[ESTIMATOR_POOL].light_sums[0] += llrint(1000.0 * 0x1p30);
@@ -278,7 +280,7 @@ START_TEST(test_dot)
     Estimators estimators;
     estimators_init(&estimators);
     for (int g = 0; g < 20; ++g) {
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s)
             estimator_set(&estimators, s, 1.0, 1.0, 1.0);
         for (size_t c = 0; g == 10 && c < 3; ++c)
             estimators.films[ESTIMATOR_CHAINS].light_sums[c] += llrint(1000.0 * 0x1p30);
@@ -328,7 +330,7 @@ START_TEST(test_importance)
     float importance[IMPORTANCE_CELLS];
     double sum = 0.0, weighted = 0.0, least = 0.05 * 0.505;
     estimators_init(&estimators);
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+    for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s) {
         estimator_set(&estimators, s, 1.0, 0.0, 0.0);
         for (size_t i = 0; i < 3 * PIXELS; ++i)
             estimators.films[s].light_sums[i] = (i / 3 % SIDE < SIDE / 2 ? 100 : 1) * (1ll << 22);
@@ -372,7 +374,7 @@ START_TEST(test_visits)
     ck_assert(importance_visits(&estimators.combination, samples, visited, visits, &error));
     ck_assert_uint_eq(visits[IMPORTANCE_CELLS], 0);
     for (int g = 0; g < 20; ++g) {
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s) {
             estimator_set(&estimators, s, 1.0, 1.0, 0.1);
             for (size_t i = 0; i < 3 * PIXELS; ++i)
                 if (i / 3 % SIDE >= 24)
@@ -423,5 +425,6 @@ int main(void)
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, combination_rare_tests());
     suite_add_tcase(suite, combination_known_tests());
+    suite_add_tcase(suite, combination_bidirectional_tests());
     return test_run(suite);
 }

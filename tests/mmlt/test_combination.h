@@ -5,12 +5,13 @@
 #include "mmlt/combined_image.h"
 #include "support/test_util.h"
 
-/* Combines a generation whose estimators have left these films, with light_samples samples of each (0: none), by the
- * teacher's weights, and lets the learner learn from it. The chains' film becomes the combination. */
+/* Combines a generation whose estimators have left these films, with light_samples samples of each (0, or NULL: none), by
+ * the teacher's weights, and lets the learner learn from it. The chains' film becomes the combination. */
 void films_combine(Combination *learner, Combination *teacher, Film *const films[ESTIMATOR_COUNT]);
 
-/* Light above the clamping thresholds; combinations of given variances. */
+/* Light above the clamping thresholds; combinations of given variances; bidirectional path tracing. */
 TCase *combination_rare_tests(void);
 TCase *combination_known_tests(void);
+TCase *combination_bidirectional_tests(void);
 
 #endif

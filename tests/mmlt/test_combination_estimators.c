@@ -57,11 +57,12 @@ void films_combine(Combination *learner, Combination *teacher, Film *const films
     Error error = {0};
     double samples[ESTIMATOR_COUNT];
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        samples[s] = (double)films[s]->light_samples;
+        samples[s] = films[s] ? (double)films[s]->light_samples : 0.0;
     ck_assert(combined_image_init(&image, films[ESTIMATOR_CHAINS], &error));
     combined_image_begin(&image, learner, teacher, samples);
     for (int s = ESTIMATOR_COUNT - 1; s >= 0; --s)
-        combined_image_add(&image, (EstimatorKind)s, films[s]);
+        if (films[s])
+            combined_image_add(&image, (EstimatorKind)s, films[s]);
     combined_image_finish(&image, films[ESTIMATOR_CHAINS]);
     combination_variances_update(learner, teacher);
     combined_image_destroy(&image);
@@ -69,7 +70,9 @@ void films_combine(Combination *learner, Combination *teacher, Film *const films
 
 double generation(Estimators *estimators)
 {
-    Film *const films[ESTIMATOR_COUNT] = {&estimators->films[0], &estimators->films[1], &estimators->films[2]};
+    Film *films[ESTIMATOR_COUNT];
+    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        films[s] = &estimators->films[s];
     double sum = 0.0;
     films_combine(&estimators->combination, &estimators->combination, films);
     for (size_t i = 0; i < 3 * PIXELS; ++i)

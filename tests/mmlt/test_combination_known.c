@@ -1,7 +1,6 @@
 /* Weights, errors, plans, importance and visits that a combination derives from given variances, against a search for
  * the optimum. */
-#include "mmlt/test_combination.h"
-#include "support/test_files.h"
+#include "mmlt/test_combination_model.h"
 
 #include "camera/film_sum.h"
 #include "mmlt/combination_learn.h"
@@ -9,129 +8,9 @@
 #include "mmlt/plan.h"
 #include "mmlt/tuning.h"
 
-/* Width and height differ, and half of the last row of tiles is outside the image. */
-#define WIDTH 64
-#define HEIGHT 44
-#define PIXELS ((size_t)WIDTH * HEIGHT)
 #define ROUNDS 40
 
-/* The pools' part of the time of pools and chains together if only these matter (test_plan in
- * mmlt/test_combination.c). */
-#define POOL_TIME 0.45
-
-typedef struct Known {
-    Film film;
-    Combination combination;
-    unsigned state;
-} Known;
-
-static double octaves(Known *known, double most)
-{
-    return exp2(most * (2.0 * test_random_unit(&known->state) - 1.0));
-}
-
-/* Sets random variances for all estimators, and random numbers of samples from which they were estimated. */
-static void known_tell(Known *known, double range)
-{
-    for (size_t i = 0; i < combination_tile_count(&known->combination); ++i) {
-        CombinationTile *tile = &known->combination.known[i];
-        for (int s = 0; s < SERIES_COUNT; ++s)
-            tile->spread[s] = octaves(known, range);
-        tile->direct = octaves(known, range);
-        tile->light = octaves(known, 3.0);
-    }
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        known->combination.sums[s].weight[0] = (float)octaves(known, 3.0);
-    known->combination.rare_chains = octaves(known, range);
-    known->combination.rare_paths = octaves(known, range);
-    known->combination.chains_correlation = 2.0 * octaves(known, 1.0);
-}
-
-static void known_init(Known *known, unsigned seed)
-{
-    Error error = {0};
-    *known = (Known){.state = seed};
-    ck_assert(film_init(&known->film, WIDTH, HEIGHT, (const int[4]){0, 0, WIDTH, HEIGHT}, &error));
-    ck_assert(film_light_reserve(&known->film, &error));
-    ck_assert(film_rare_reserve(&known->film, &error));
-    ck_assert(combination_init(&known->combination, &known->film, &error));
-    for (int s = 0; s < SERIES_COUNT; ++s)
-        known->combination.ready[s] = true;
-    known_tell(known, 3.0);
-}
-
-static void known_destroy(Known *known)
-{
-    film_destroy(&known->film);
-    combination_destroy(&known->combination);
-}
-
 /* ---- weights ----------------------------------------------------------------------------------------------------- */
-
-/* The weight of path tracing's own rare light, against the chains', with which rare light has the least variance: in
- * the tile or, if that is less, in all tiles together. The chains' variance counts twice, and as their errors are
- * correlated. None where light may be hidden from path tracing. factor: of the chains' variance in `all`. */
-static double rare_weight(const Combination *all, const CombinationTile *tile, const double samples[ESTIMATOR_COUNT],
-                          double factor)
-{
-    if (all->hidden)
-        return 0.0;
-    double doubt = 2.0 * all->chains_correlation / samples[ESTIMATOR_CHAINS],
-           chains = doubt * tile->spread[SERIES_RARE], all_chains = doubt * factor * all->rare_chains;
-    return fmin(chains / (chains + tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS]),
-                all_chains / (all_chains + all->rare_paths / samples[ESTIMATOR_PATHS]));
-}
-
-/* A tile, samples of each estimator, the weight of path tracing's own rare light, and the correlation of the chains'
- * errors. */
-typedef struct TileTerms {
-    const CombinationTile *tile;
-    const double *samples;
-    double v, correlation;
-} TileTerms;
-
-/* Variance of a tile in which path tracing has the weight w and the rest is split between chains (weight c) and pool.
- * The excess that pools clamp comes from chains and goes with chains and pool; the rare remainder of path tracing goes
- * with path tracing. Model of mmlt/combination.c: the rare remainder is correlated with the other estimate through the
- * chains' weight c in it. What chains have part in has the variance of correlated errors. */
-static double combined_variance(const TileTerms *terms, double w, double c)
-{
-    const CombinationTile *tile = terms->tile;
-    const double *samples = terms->samples, v = terms->v;
-    double by_chains = terms->correlation * tile->spread[SERIES_RARE] / samples[ESTIMATOR_CHAINS],
-           rare =
-               v * v * tile->spread[SERIES_PATHS_RARE] / samples[ESTIMATOR_PATHS] + (1.0 - v) * (1.0 - v) * by_chains;
-    double others = c * c * tile->spread[ESTIMATOR_CHAINS] / samples[ESTIMATOR_CHAINS] +
-                    (1.0 - c) * (1.0 - c) * tile->spread[ESTIMATOR_POOL] / samples[ESTIMATOR_POOL] +
-                    tile->spread[SERIES_EXCESS] / samples[ESTIMATOR_CHAINS];
-    others *= terms->correlation;
-    double paths = tile->spread[ESTIMATOR_PATHS] / samples[ESTIMATOR_PATHS] + rare;
-    if (!(w > 0.0))
-        return others; /* also if path tracing has no samples */
-    return (1.0 - w) * (1.0 - w) * others + w * w * paths +
-           2.0 * w * (1.0 - w) * c * (1.0 - v) * fmin(by_chains, others);
-}
-
-/* Ternary search in [0, 1] for the weight with the least variance, which is convex in either: of path tracing
- * (of_paths), or of chains relative to the pool. */
-static double weight_search(const TileTerms *terms, bool of_paths, double c)
-{
-    double low = 0.0, high = 1.0;
-    for (int step = 0; step < 100; ++step) {
-        double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-        double at_a = of_paths ? combined_variance(terms, a, c) : combined_variance(terms, 0.0, a);
-        double at_b = of_paths ? combined_variance(terms, b, c) : combined_variance(terms, 0.0, b);
-        *(at_a < at_b ? &high : &low) = at_a < at_b ? b : a;
-    }
-    return 0.5 * (low + high);
-}
-
-static double least_variance(const TileTerms *terms, double *w, double *c)
-{
-    *c = weight_search(terms, false, 0.0);
-    *w = weight_search(terms, true, *c);
-    return combined_variance(terms, *w, *c);
-}
 
 /* The estimator's value in a channel of pixel i, in units of the film: different for all estimators, channels and
  * adjacent pixels. */
@@ -155,7 +34,7 @@ START_TEST(test_weights_known)
     if (_i == 1)
         teacher.combination.ready[ESTIMATOR_PATHS] = false;
     Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
-    for (int s = 0; s < ESTIMATOR_COUNT; ++s) {
+    for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s) {
         films[s]->light_samples = (uint64_t)samples[s];
         for (size_t i = 0; i < 3 * PIXELS; ++i)
             films[s]->light_sums[i] = llrint(samples[s] / PIXELS * estimator_value(s, i / 3, i % 3));
@@ -198,14 +77,6 @@ END_TEST
 
 /* ---- errors and plans -------------------------------------------------------------------------------------------- */
 
-static double dark_square(const Combination *combination)
-{
-    double light = 0.0;
-    for (size_t i = 0; i < combination_tile_count(combination); ++i)
-        light += combination->known[i].light / (double)combination_tile_count(combination);
-    return DARK_PART * light * light;
-}
-
 /* The error of a tile is the least variance over the square of its light plus DARK_PART of the mean's square. */
 START_TEST(test_errors_known)
 {
@@ -226,38 +97,6 @@ START_TEST(test_errors_known)
     known_destroy(&known);
 }
 END_TEST
-
-/* The variance of chains is a / T_pool + b / T_steps. In a given total time it is least if pools have the part sqrt(a)
- * / (sqrt(a) + sqrt(b)), which is POOL_TIME. Returns the variance of one step relative to that of the past. */
-static double chains_vary(const Combination *combination, const double samples[ESTIMATOR_COUNT],
-                          const double costs[ESTIMATOR_COUNT])
-{
-    double a = POOL_TIME * POOL_TIME, b = (1.0 - POOL_TIME) * (1.0 - POOL_TIME);
-    double pools = (double)combination->sums[ESTIMATOR_POOL].weight[0],
-           steps = (double)combination->sums[ESTIMATOR_CHAINS].weight[0];
-    double now =
-        a * samples[ESTIMATOR_CHAINS] * costs[ESTIMATOR_CHAINS] / (samples[ESTIMATOR_POOL] * costs[ESTIMATOR_POOL]) + b;
-    double before = a * steps * costs[ESTIMATOR_CHAINS] / (pools * costs[ESTIMATOR_POOL]) + b;
-    return now / before;
-}
-
-/* The image's error with these numbers of samples. */
-static double picture_error(const Combination *combination, const double samples[ESTIMATOR_COUNT],
-                            const double costs[ESTIMATOR_COUNT])
-{
-    double sum = 0.0, w, c, factor = chains_vary(combination, samples, costs), dark = dark_square(combination);
-    for (size_t i = 0; i < combination_tile_count(combination); ++i) {
-        CombinationTile tile = combination->known[i];
-        tile.spread[ESTIMATOR_CHAINS] *= factor;
-        tile.spread[SERIES_EXCESS] *= factor;
-        tile.spread[SERIES_RARE] *= factor;
-        const TileTerms terms = {&tile, samples, rare_weight(combination, &tile, samples, factor),
-                                 combination->chains_correlation};
-        sum += (least_variance(&terms, &w, &c) + tile.direct / samples[ESTIMATOR_PATHS]) /
-               (tile.light * tile.light + dark);
-    }
-    return sum;
-}
 
 /* Among all divisions of the time into twentieths, and one that leaves chains and pool half of one each, the plan has
  * the least error. */
@@ -285,8 +124,8 @@ START_TEST(test_plan_known)
                 double error = picture_error(&known.combination, samples, costs);
                 if (error < least) {
                     least = error;
-                    best = (StepRates){samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
-                                       samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
+                    best = (StepRates){.paths = samples[ESTIMATOR_PATHS] / samples[ESTIMATOR_CHAINS],
+                                       .pool = samples[ESTIMATOR_POOL] / samples[ESTIMATOR_CHAINS]};
                 }
             }
         StepRates rates = combination_rates(&known.combination);
@@ -363,11 +202,8 @@ START_TEST(test_worth_known)
         for (size_t i = 0; i < combination_tile_count(&teacher.combination); ++i)
             for (int k = 0; k < 2; ++k) {
                 const double *of = k == 0 ? best : samples;
-                CombinationTile tile = teacher.combination.known[i];
                 double factor = chains_vary(&teacher.combination, of, costs);
-                tile.spread[ESTIMATOR_CHAINS] *= factor;
-                tile.spread[SERIES_EXCESS] *= factor;
-                tile.spread[SERIES_RARE] *= factor;
+                const CombinationTile tile = tile_with(&teacher.combination, i, factor);
                 bool paths = of[ESTIMATOR_PATHS] > 0.0;
                 const TileTerms terms = {&tile, of, paths ? rare_weight(&teacher.combination, &tile, of, factor) : 0.0,
                                          teacher.combination.chains_correlation};
@@ -376,7 +212,7 @@ START_TEST(test_worth_known)
                 errors[k] += least / (tile.light * tile.light + dark);
             }
         Film *const films[ESTIMATOR_COUNT] = {&pupil.film, &others[0].film, &others[1].film};
-        for (int s = 0; s < ESTIMATOR_COUNT; ++s)
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s)
             films[s]->light_samples = (uint64_t)samples[s];
         films_combine(&pupil.combination, &teacher.combination, films);
         double expected = estimators_work(samples) * fmin(errors[0] / errors[1], 2.0);
@@ -465,6 +301,7 @@ START_TEST(test_visits_known)
     double deviation[IMPORTANCE_CELLS], sum = 0.0;
     uint visits[IMPORTANCE_CELLS + 1], pixels[IMPORTANCE_CELLS] = {0};
     known_init(&known, 17);
+    known.combination.ready[ESTIMATOR_BIDIRECTIONAL] = true;
     for (int s = 0; _i == 1 && s < SERIES_COUNT; ++s)
         known.combination.known[5].spread[s] = 1e6; /* one tile has nearly all of the error */
     combination_errors(&known.combination, samples, errors);
@@ -505,11 +342,12 @@ END_TEST
 START_TEST(test_wild_numbers)
 {
     static const double WILD[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300, -1e300, 0.0};
-    const double samples[ESTIMATOR_COUNT] = {64.0, 6.0, 48.0};
+    const double samples[ESTIMATOR_COUNT] = {64.0, 6.0, 48.0, 32.0};
     const size_t count = sizeof WILD / sizeof WILD[0];
     float importance[IMPORTANCE_CELLS];
     Known known;
     known_init(&known, 17);
+    known.combination.ready[ESTIMATOR_BIDIRECTIONAL] = true;
     for (size_t kind = 0; kind < count * count; ++kind) {
         CombinationTile *tile = &known.combination.known[kind % combination_tile_count(&known.combination)];
         const CombinationTile kept = *tile;

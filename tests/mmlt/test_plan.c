@@ -312,8 +312,8 @@ START_TEST(test_paths)
     const RenderOptions options = {.first_sample = 7};
     RenderRun run = {.options = &options, .crop_pixels = 10};
     Film film = {.reconstruction = RECONSTRUCTION_SPLAT};
-    PathsEstimator paths = {.own = {.film = &film}, .sequences = (uint)_i};
-    paths.frame.partition.split_direct = 1;
+    PathsEstimator paths = {
+        .own = {.film = &film}, .sequences = (uint)_i, .combined = true, .forced_end = 4, .forced_each = 1};
     const double more[12] = {0.1, 0.1, 0.1, 0.1, 0.6, 0.6, 0.3, 0.3, 0.9, 2.2, 0.0, 0.4};
     uint next[2] = {7u, 7u + 0x40000000u};
     double wanted = 4.0;
