@@ -9,6 +9,9 @@
 /* The first sample number of trials: behind those of both stratified sequences. */
 #define TRIAL_FIRST 0x60000000u
 
+/* The most samples of a pixel that a generation is forced to have. */
+#define FORCED_MOST 2u
+
 bool bidirectional_estimator_init(BidirectionalEstimator *estimator, const RenderRun *run, Film *film, bool allowed,
                                   const Guide *guide, Error *error)
 {
@@ -27,9 +30,9 @@ void bidirectional_estimator_archive(Archive *archive, BidirectionalEstimator *e
     if (!estimator->allowed)
         return;
     paths_estimator_archive(archive, &estimator->whole);
-    ARCHIVE_FIELD(archive, estimator->whole.forced_first);
+    archive_count(archive, &estimator->whole.forced_first, 0, 1, "first generations");
     ARCHIVE_FIELD(archive, estimator->whole.forced_end);
-    ARCHIVE_FIELD(archive, estimator->whole.forced_each);
+    archive_count(archive, &estimator->whole.forced_each, 0, FORCED_MOST, "samples of first generations");
 }
 
 void bidirectional_estimator_begin(BidirectionalEstimator *estimator, const Plan *plan, const RenderRun *run,
@@ -43,7 +46,7 @@ void bidirectional_estimator_begin(BidirectionalEstimator *estimator, const Plan
         return;
     estimator->whole.forced_first = 1;
     estimator->whole.forced_end = shown ? NONE : 1 + BIDIRECTIONAL_FORCED;
-    estimator->whole.forced_each = 2.0 * part <= BIDIRECTIONAL_PART_EACH ? 2 : 1;
+    estimator->whole.forced_each = (double)FORCED_MOST * part <= BIDIRECTIONAL_PART_EACH ? FORCED_MOST : 1;
 }
 
 /* Single-pixel samples of a trial that follows `done` work. */

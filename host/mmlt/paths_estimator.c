@@ -94,6 +94,7 @@ uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *gene
         uint64_t forced = (uint64_t)(generation->index - paths->forced_first + 1) * paths->forced_each;
         target = target < forced ? forced : target;
     }
+    target = target < most ? target : most;
     return target > paths->done ? target - paths->done : 0;
 }
 
