@@ -5,6 +5,7 @@
 #include "base/sample_statistics.h"
 #include "chain/pool.h"
 #include "mmlt/mmlt.h"
+#include "render/integrator.h"
 
 #include "math/rng.h"
 
@@ -19,6 +20,7 @@ struct Backend {
     bool pilot; /* the next pool is the pilot, before the first generation, which shows nothing */
     uint paths[REPLICAS]; /* path tracing's samples of each pixel, in either sequence */
     uint repeated; /* passes of path tracing that do not continue with the next sample of their sequence */
+    uint trial; /* bidirectional path tracing's next sample number that no trial has had */
     bool bright; /* path tracing finds light, so that pools adapt their visits */
 };
 
@@ -52,6 +54,15 @@ static void sequence_record(Backend *backend, const FrameParams *frame)
     backend->paths[half] += frame->pass.item_count / (frame->film.width * frame->film.height);
 }
 
+/* Trials of bidirectional path tracing have sample numbers of their own, behind those that sequences get to. */
+static void trial_record(Backend *backend, const FrameParams *frame)
+{
+    uint pixels = frame->film.width * frame->film.height;
+    ck_assert_uint_ge(frame->pass.sample_index, backend->trial ? backend->trial : 0x60000000u);
+    ck_assert_uint_eq(frame->path.sobol, 0);
+    backend->trial = frame->pass.sample_index + (frame->pass.item_count + pixels - 1) / pixels;
+}
+
 /* A separate splat for each path-tracing sample; the lower half of the image is a thousand times darker. */
 static void paths_record(const FrameParams *frame, const SplatSink *sink)
 {
@@ -77,6 +88,8 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
         if (!backend->pilot)
             pool_record(backend, frame, list->guide);
         backend->pilot = false;
+    } else if (frame->path.strategies == integrator_bdpt()->strategies) {
+        trial_record(backend, frame);
     } else {
         sequence_record(backend, frame);
         if (backend->bright && sink->splats)

@@ -378,6 +378,7 @@ END_TEST
 TCase *import_materials_case(void)
 {
     TCase *tcase = tcase_create("materials");
+    tcase_set_timeout(tcase, 60); /* albedos of coats */
     tcase_add_test(tcase, defaults);
     tcase_add_test(tcase, conductors);
     tcase_add_test(tcase, spectra);
