@@ -190,6 +190,24 @@ bool matrix_swaps_handedness(const Matrix *matrix)
     return matrix_determinant(matrix) < 0.0;
 }
 
+double matrix_similarity_scale(const double m[16])
+{
+    double column[3][3];
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            column[j][i] = m[4 * i + j];
+    double length = sqrt(column[0][0] * column[0][0] + column[0][1] * column[0][1] + column[0][2] * column[0][2]);
+    for (int j = 0; j < 3; ++j)
+        for (int k = 0; k < 3; ++k) {
+            double dot = 0.0;
+            for (int i = 0; i < 3; ++i)
+                dot += column[j][i] * column[k][i];
+            if (fabs(dot - (j == k ? length * length : 0.0)) > 1e-5 * length * length)
+                return 0.0;
+        }
+    return length;
+}
+
 void matrix_vector(const Matrix *matrix, const double in[3], double out[3])
 {
     const double *m = matrix->m;

@@ -41,6 +41,9 @@ double matrix_determinant(const Matrix *matrix);
 /* Whether matrix_determinant is negative, which exchanges left- and right-handed. */
 bool matrix_swaps_handedness(const Matrix *matrix);
 
+/* The factor of a similarity transform (rotation, reflection, uniform scale); 0 if it is none to within 1e-5. */
+double matrix_similarity_scale(const double m[16]);
+
 /* out = a x b; `out` must not be a or b. */
 void vector_cross(const double a[3], const double b[3], double out[3]);
 

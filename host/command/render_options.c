@@ -5,91 +5,10 @@
 #include "base/options.h"
 #include "base/path_name.h"
 #include "command/mlt_option.h"
+#include "command/render_option_specs.h"
 #include "render/shard.h"
 
 #include <string.h>
-
-static const OptionSpec SPECS[RENDER_OPTION_COUNT] = {
-    [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
-    [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",
-                           "algorithm: mmlt (Metropolis; default), pt (path tracing), bdpt or ibpt (bidirectional)"},
-    [OPTION_HEURISTIC] = {"heuristic", 0, "NAME", "MIS weights of strategies: power (default) or balance"},
-    [OPTION_SAMPLER] = {"sampler", 0, "NAME", "random numbers of a pixel: stratified (sobol; default) or independent"},
-    [OPTION_RECONSTRUCTION] =
-        {"reconstruction", 0, "NAME",
-         "by the pixel filter, a sample goes to one pixel (sample) or is spread (splat; default)"},
-    [OPTION_STRATEGY] = {"strategy", 0, "s,t",
-                         "show one bidirectional strategy: s vertices from the light, t from the camera"},
-    [OPTION_UNWEIGHTED] = {"unweighted", 0, NULL, "with --strategy: without MIS weights"},
-    [OPTION_SAMPLES] = {"samples", 0, "N", "samples per pixel; with mmlt as much work (default: the scene's)"},
-    [OPTION_TIME] = {"time", 0, "TIME", "render for 30s, 10m or 2h; with --samples, until either is reached"},
-    [OPTION_ERROR] = {"error", 0, "E",
-                      "render until the estimated relative error (square root of relMSE trimmed) is below 2% or 0.02"},
-    [OPTION_ERROR_PERCENTILE] =
-        {"error-percentile", 0, "P",
-         "with --error: of all pixels but the worst, as in 99 (default: root mean square of 99.9 %)"},
-    [OPTION_ERROR_OF] = {"error-of", 0, "WHAT", "with --error: of pixels (default) or of blocks of 8 x 8 pixels"},
-    [OPTION_BACKEND] = {"backend", 0, "NAME", "where to render: cpu (default), opencl, or all of them together"},
-    [OPTION_DEVICE] = {"device", 0, "DEVICE,...",
-                       "OpenCL devices, by number or part of a name as in twinlight devices (default: 0)"},
-    [OPTION_BATCH] = {"batch", 0, "N", "paths that an OpenCL device works on at a time (default: by device)"},
-    [OPTION_FILM] = {"film", 0, "WHERE",
-                     "what adds the paths of OpenCL devices to the film: host or device (default: by device)"},
-    [OPTION_MLT] = {"mlt", 0, "KEY=VALUE,...", "mmlt: the switches listed below; several --mlt add up"},
-    /* deprecated (command/mlt_option.h) */
-    [OPTION_MLT_SCHEME] = {"mlt-scheme", 0, "NAME", NULL},
-    [OPTION_CHAINS] = {"chains", 0, "N", NULL},
-    [OPTION_STEPS] = {"steps", 0, "N", NULL},
-    [OPTION_POOL] = {"pool", 0, "N", NULL},
-    [OPTION_LARGE_STEP] = {"large-step", 0, "P", NULL},
-    [OPTION_MUTATIONS] = {"mutations", 0, "KIND,...", NULL},
-    [OPTION_SORT] = {"sort", 0, "ORDER", NULL},
-    [OPTION_NO_SORT] = {"no-sort", 0, NULL, NULL},
-    [OPTION_NO_GROUP] = {"no-group", 0, NULL, NULL},
-    [OPTION_NO_SHIFT] = {"no-shift", 0, NULL, NULL},
-    [OPTION_NO_AIM] = {"no-aim", 0, NULL, NULL},
-    [OPTION_NO_BLEND] = {"no-blend", 0, NULL, NULL},
-    [OPTION_MEMORY] = {"memory", 0, NULL, "mmlt: print how much memory its chains take, and exit"},
-    [OPTION_DUMP_BAD] = {"dump-bad", 0, "FILE", "mmlt: list the chains with contributions that are not finite"},
-    [OPTION_THREADS] = {"threads", 'j', "N", "threads (default: one per processor that may be used)"},
-    [OPTION_SEED] = {"seed", 0, "N", "seed of the random numbers (default: 0)"},
-    [OPTION_PHOTONS] =
-        {"photons", 0, "N",
-         "pt, mmlt: find caustics by at most this many photons (default: what is worth it with mmlt, else 0)"},
-    [OPTION_NO_OPENINGS] = {"no-openings", 0, NULL,
-                            "start light subpaths anywhere, even in rooms that light enters through windows alone"},
-    [OPTION_MAX_DEPTH] = {"max-depth", 0, "D",
-                          "maximum depth of paths, in segments (default: the scene's maxdepth + 1)"},
-    [OPTION_RESOLUTION] = {"resolution", 0, "WxH", "size of the film in pixels (default: the scene's)"},
-    [OPTION_CROP] = {"crop", 0, "x0,y0,x1,y1", "render only pixels x0 <= x < x1, y0 <= y < y1"},
-    [OPTION_SHARD] =
-        {"shard", 0, "K/N",
-         "render the K-th of N parts of the picture to a file for twinlight merge (default: SCENE-KofN.part)"},
-    [OPTION_SAVE_EVERY] = {"save-every", 0, "TIME", "write the image this often while rendering"},
-    [OPTION_PILOT] = {"pilot", 0, "FILE", "mmlt: a shard begins with what the rendering of this checkpoint has learnt"},
-    [OPTION_CHECKPOINT] = {"checkpoint", 0, "FILE", "write what is needed to go on after an interruption"},
-    [OPTION_CHECKPOINT_EVERY] = {"checkpoint-every", 0, "TIME", "how often, besides at the end (default: 10m)"},
-    [OPTION_RESUME] = {"resume", 0, "FILE",
-                       "go on from a checkpoint of the same scene and options, up to --samples or for --time more"},
-    [OPTION_LAYERS] =
-        {"layers", 0, "NAME,...",
-         "additional layers: " AOV_LIST(LAYER_TEXT_OF) "with mmlt " LAYER_LIST_LIGHT(
-             LAYER_TEXT_OF) "or all (but by-depth) or none (default: with mmlt " AOV_LIST(LAYER_TEXT_OF) "else none)"},
-    [OPTION_DESPECKLE] = {"despeckle", 0, "T",
-                          "add a layer in which pixels over T times as bright as the median around them are replaced"},
-    [OPTION_FRAME] = {"frame", 0, "N", "number that replaces %d, %4d or %04d in file names"},
-    [OPTION_PNG] = {"png", 0, "[FILE]", "write a PNG, next to the image unless named (default)"},
-    [OPTION_NO_PNG] = {"no-png", 0, NULL, "write no PNG"},
-    [OPTION_EXPOSURE] = {"exposure", 0, "STOPS", "multiply the PNG's colours by 2^STOPS (default: 0)"},
-    [OPTION_STATS] = {"stats", 0, "FILE.json", "write statistics as JSON; - for standard output"},
-    [OPTION_TRACE] = {"trace", 0, "FILE.json", "write a timeline of the devices, for chrome://tracing"},
-    [OPTION_TEV] = {"tev", 0, "HOST:PORT", "send the picture to the viewer tev as it converges"},
-    [OPTION_SERVE] = {"serve", 0, "[ADDRESS:PORT]", "show the picture as it converges on a page in the browser"},
-    [OPTION_VERIFY] = {"verify", 0, NULL,
-                       "compare the backend's state with the CPU's bit for bit instead of rendering"},
-    [OPTION_LENIENT] = {"lenient", 0, NULL, "replace unsupported features, with a warning"},
-    [OPTION_QUIET] = {"quiet", 'q', NULL, "print warnings and errors only"},
-};
 
 /* Parsing in progress. */
 typedef struct Parse {
@@ -104,7 +23,7 @@ static bool number_set(const Parse *parse, int option, const char *value, Error 
 {
     RenderCommand *command = parse->command;
     uint64_t whole = 0;
-    const char *name = SPECS[option].name;
+    const char *name = RENDER_OPTION_SPECS[option].name;
     switch (option) {
     case OPTION_SAMPLES:
         return option_whole(name, value, 1, 0x7fffffff, &command->samples, error);
@@ -145,7 +64,7 @@ static bool path_set(const char **path, int option, const char *value, const cha
     *path = value;
     if (!ending || path_ends(value, ending))
         return true;
-    error_set(error, "--%s=%s: the name does not end in %s", SPECS[option].name, value, ending);
+    error_set(error, "--%s=%s: the name does not end in %s", RENDER_OPTION_SPECS[option].name, value, ending);
     return error_fix(error, "this file is written in that format only; give it a name like image%s", ending);
 }
 
@@ -231,7 +150,7 @@ static bool shard_set(RenderCommand *command, const char *value, Error *error)
 /* Options of Markov chains. */
 static bool chain_option_set(RenderCommand *command, int option, const char *value, Error *error)
 {
-    const char *name = SPECS[option].name;
+    const char *name = RENDER_OPTION_SPECS[option].name;
     command->chain_option = name;
     switch (option) {
     case OPTION_MLT:
@@ -436,12 +355,12 @@ static bool backends_set(RenderCommand *command, const BackendTable *table, cons
 static int specs_fill(const RenderOptionSet *set, OptionSpec *specs)
 {
     if (!set->uses) {
-        memcpy(specs, SPECS, sizeof SPECS);
+        memcpy(specs, RENDER_OPTION_SPECS, sizeof RENDER_OPTION_SPECS);
         return RENDER_OPTION_COUNT;
     }
     for (int i = 0; i < set->use_count; ++i) {
         const RenderOptionUse *use = &set->uses[i];
-        specs[i] = SPECS[use->option];
+        specs[i] = RENDER_OPTION_SPECS[use->option];
         specs[i].argument = use->argument ? use->argument : specs[i].argument;
         specs[i].help = use->help ? use->help : specs[i].help;
     }

@@ -13,6 +13,7 @@ libtwinlight_host_la_SOURCES += \
 	host/command/part_output.c host/command/part_output.h \
 	host/command/render_job.h \
 	host/command/render_names.c \
+	host/command/render_option_specs.c host/command/render_option_specs.h \
 	host/command/render_options.c host/command/render_options.h \
 	host/command/render_output.c host/command/render_output.h \
 	host/command/render_results.c \

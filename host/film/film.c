@@ -1,7 +1,7 @@
 #include "film/film.h"
 
-#include "base/parallel.h"
 #include "camera/film_spread.h"
+#include "film/film_rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -129,8 +129,7 @@ void film_quantum_set(Film *film, double mean)
     film->quantum_exponent = exponent - 1 - QUANTUM_OCTAVES;
 }
 
-/* A film's view, also for reading a const film. */
-static FilmView film_view(const Film *film)
+FilmView film_view(const Film *film)
 {
     return (FilmView){.width = (uint)film->width,
                       .x0 = (uint)film->crop[0],
@@ -166,136 +165,10 @@ void film_add_splats(Film *film, const uint *splats, uint count, uint stride)
     }
 }
 
-/* Calls part(context, row) for every row of pixels, several at a time in large films. */
-static void rows_run(const Film *film, ParallelPart *part, void *context)
+void film_rows_run(const Film *film, ParallelPart *part, void *context)
 {
     int threads = film_pixels(film) < PARALLEL_PIXELS ? 1 : film->threads;
     parallel_run((size_t)(film->crop[3] - film->crop[1]), threads, part, context);
-}
-
-/* ---- adding films ------------------------------------------------------------------------------------------------ */
-
-/* Adding a film to another. */
-typedef struct FilmAdding {
-    FilmView film, from;
-    size_t pixels;
-    bool shared; /* other threads may add to the film meanwhile */
-} FilmAdding;
-
-/* Most sums of a short pass are zero, and testing is cheaper than adding. */
-static void word_add(const FilmAdding *adding, ulong *sum, ulong units)
-{
-    if (units != 0 && adding->shared)
-        film_sum_add(sum, units);
-    else if (units != 0 && !film_sum_full(*sum))
-        *sum = film_sum_of(*sum, units);
-}
-
-/* Adds the sums per depth, of the kinds and depths that both films have. */
-static void depths_add(const FilmAdding *adding, size_t first, size_t end)
-{
-    const FilmView *film = &adding->film, *from = &adding->from;
-    uint kinds = film->depth_kinds < from->depth_kinds ? film->depth_kinds : from->depth_kinds;
-    uint last = film->depth_last < from->depth_last ? film->depth_last : from->depth_last;
-    for (uint depth = SPLAT_DEPTH_MIN; depth <= last; ++depth)
-        for (uint kind = 0; kind < kinds; ++kind) {
-            uint pixels = (uint)adding->pixels;
-            ulong *into = film->depth_sums + film_depth_place(pixels, film->depth_kinds, depth, kind);
-            const ulong *more = from->depth_sums + film_depth_place(pixels, from->depth_kinds, depth, kind);
-            for (size_t i = 3 * first; i < 3 * end; ++i)
-                word_add(adding, into + i, more[i]);
-        }
-}
-
-/* Adds pixels [first, end), of the sums that both films have. */
-static void pixels_add(const FilmAdding *adding, size_t first, size_t end)
-{
-    const FilmView *film = &adding->film, *from = &adding->from;
-    for (size_t i = first; i < end; ++i) {
-        for (size_t c = 3 * i; c < 3 * i + 3; ++c) {
-            word_add(adding, film->sums + c, from->sums[c]);
-            if (film->light_sums && from->light_sums)
-                word_add(adding, film->light_sums + c, from->light_sums[c]);
-            if (film->rare_sums && from->rare_sums)
-                word_add(adding, film->rare_sums + c, from->rare_sums[c]);
-        }
-        if (from->counts[i] > 0)
-            atomic_count_add(film->counts + i, from->counts[i]);
-    }
-    if (film->depth_kinds != 0u && from->depth_kinds != 0u)
-        depths_add(adding, first, end);
-}
-
-static void counters_add(const FilmAdding *adding)
-{
-    atomic_sum_add(adding->film.saturated, *adding->from.saturated);
-    atomic_sum_add(adding->film.vanished, *adding->from.vanished);
-    atomic_sum_add(adding->film.not_finite, *adding->from.not_finite);
-}
-
-size_t film_sum_words(const Film *film)
-{
-    uint pixels = (uint)film_pixels(film);
-    return film_words(pixels, (film->light_sums ? 1u : 0u) + (film->rare_sums ? 1u : 0u)) +
-           film_depth_words(pixels, film->depth_kinds, film->depth_last);
-}
-
-static void row_merge(void *context, size_t row)
-{
-    const FilmAdding *adding = context;
-    size_t width = adding->film.x1 - adding->film.x0;
-    pixels_add(adding, row * width, (row + 1) * width);
-}
-
-void film_add_sums(Film *film, ulong *words)
-{
-    FilmAdding adding = {.film = film_view(film), .from = film_view(film), .pixels = film_pixels(film), .shared = true};
-    film_view_words(&adding.from, words, (uint)adding.pixels);
-    rows_run(film, row_merge, &adding);
-    counters_add(&adding);
-}
-
-void film_words_add(ulong *words, const ulong *more, size_t count)
-{
-    const FilmAdding alone = {.shared = false};
-    for (size_t i = 0; i < count; ++i)
-        word_add(&alone, words + i, more[i]);
-}
-
-static bool film_merge_check(const Film *film, const Film *from, Error *error)
-{
-    if (film->width != from->width || film->height != from->height)
-        return error_set(error, "films of different sizes cannot be merged: %d x %d and %d x %d", film->width,
-                         film->height, from->width, from->height);
-    if (memcmp(film->crop, from->crop, sizeof film->crop) != 0)
-        return error_set(error, "films of different crops cannot be merged: %d,%d,%d,%d and %d,%d,%d,%d", film->crop[0],
-                         film->crop[1], film->crop[2], film->crop[3], from->crop[0], from->crop[1], from->crop[2],
-                         from->crop[3]);
-    if (film->quantum_exponent != from->quantum_exponent)
-        return error_set(error, "films of different quanta cannot be merged: 2^%d and 2^%d", film->quantum_exponent,
-                         from->quantum_exponent);
-    if (film->reconstruction != from->reconstruction)
-        return error_set(error, "films of different --reconstruction cannot be merged");
-    if (!film->light_sums != !from->light_sums)
-        return error_set(error, "films of integrators with and without paths from the light cannot be merged");
-    for (size_t i = 0; i < film_pixels(film); ++i)
-        if ((uint64_t)film_count(film, i) + film_count(from, i) > UINT32_MAX)
-            return error_set(error, "merged films have more than %llu samples in a pixel",
-                             (unsigned long long)film_samples_most(film->reconstruction));
-    return true;
-}
-
-bool film_merge(Film *film, const Film *from, Error *error)
-{
-    if (!film_merge_check(film, from, error))
-        return false;
-    FilmAdding adding = {.film = film_view(film), .from = film_view(from), .pixels = film_pixels(film)};
-    rows_run(film, row_merge, &adding);
-    counters_add(&adding);
-    film->light_samples += from->light_samples;
-    film->complete_samples += from->complete_samples;
-    film->every_count += from->every_count;
-    return true;
 }
 
 void film_swap_own(Film *a, Film *b)
@@ -355,7 +228,7 @@ void film_normalize(Film *film, uint64_t samples)
     FilmNormalizing normalizing = {film, (uint32_t)(samples * film_sample_units(film->reconstruction))};
     if (film->reconstruction != RECONSTRUCTION_SPLAT || samples == 0)
         return;
-    rows_run(film, row_normalize, &normalizing);
+    film_rows_run(film, row_normalize, &normalizing);
     film->every_count = normalizing.count;
 }
 
@@ -396,7 +269,7 @@ static void row_gather(void *context, size_t row)
 void film_light_gather(Film *film, uint64_t samples)
 {
     LightGathering gathering = {film, (double)samples * film_sample_units(film->reconstruction)};
-    rows_run(film, row_gather, &gathering);
+    film_rows_run(film, row_gather, &gathering);
     film->every_count = 0;
 }
 
@@ -417,7 +290,7 @@ static void row_light_add(void *context, size_t row)
 void film_light_add(Film *film, const float *change, int64_t samples)
 {
     LightAdding adding = {film, change};
-    rows_run(film, row_light_add, &adding);
+    film_rows_run(film, row_light_add, &adding);
     film->light_samples += (uint64_t)samples;
 }
 
@@ -449,6 +322,6 @@ void film_counters_clear(Film *film)
 
 void film_clear(Film *film)
 {
-    rows_run(film, row_clear, film);
+    film_rows_run(film, row_clear, film);
     film_counters_clear(film);
 }

@@ -10,7 +10,7 @@
  * threshold and leaves the rest to the chains, which have many more samples of such paths: the excess (of the pool) and
  * the rare light (of path tracing). Contribution depends on the density with which an estimator makes the path, so the
  * two rests differ. Bidirectional path tracing leaves nothing. The same variances determine how time is divided
- * (combination_rates). */
+ * (mmlt/combination_rates.h). */
 #ifndef TWINLIGHT_MMLT_COMBINATION_H
 #define TWINLIGHT_MMLT_COMBINATION_H
 
@@ -38,23 +38,5 @@ uint64_t combination_weights_set(Combination *combination, const double samples[
 /* errors[tile]: the predicted relative square error from `samples` of each estimator, without direct light and up to a
  * constant factor; all 0 until variances are known. */
 void combination_errors(const Combination *combination, const double samples[ESTIMATOR_COUNT], double *errors);
-
-/* Samples of path tracing, of pools and of bidirectional path tracing per step of a chain. */
-typedef struct StepRates {
-    double paths, pool, bidirectional;
-} StepRates;
-
-/* Saves rates that a plan has, or restores such: those that combination_rates can find, of a pool at least
- * POOL_PER_STEP. */
-void step_rates_archive(Archive *archive, StepRates *rates); /* of path tracing and pools */
-void step_rate_archive_bidirectional(Archive *archive, StepRates *rates);
-
-/* The rates of least relative error of the whole picture at equal time; zeros until variances are known. Generations
- * are compared with this division of work from then on. */
-StepRates combination_rates(Combination *combination);
-
-/* Square error of path tracing alone, relative to that of the best division of the same work, which
- * combination_rates has found; infinite if that is not known, or if light may be hidden from it. */
-double combination_alone_error(const Combination *combination);
 
 #endif

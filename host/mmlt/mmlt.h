@@ -41,6 +41,9 @@ typedef struct Mmlt {
 bool mmlt_init(Mmlt *mmlt, RenderRun *run, Error *error);
 void mmlt_destroy(Mmlt *mmlt);
 
+/* Whether paths are long enough for chains. */
+bool mmlt_chains_needed(const Mmlt *mmlt);
+
 /* Begins to keep what path tracing alone would change in the first generations, if it may be shown; or forgets it. */
 bool mmlt_changes_init(Mmlt *mmlt, Error *error);
 void mmlt_changes_forget(Mmlt *mmlt);

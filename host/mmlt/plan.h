@@ -3,7 +3,7 @@
 #ifndef TWINLIGHT_MMLT_PLAN_H
 #define TWINLIGHT_MMLT_PLAN_H
 
-#include "mmlt/combination.h"
+#include "mmlt/combination_rates.h"
 #include "mmlt/scheme.h"
 #include "render/job.h"
 

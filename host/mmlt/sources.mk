@@ -9,7 +9,9 @@ libtwinlight_host_la_SOURCES += \
 	host/mmlt/combination.c host/mmlt/combination.h \
 	host/mmlt/combination_learn.c host/mmlt/combination_learn.h \
 	host/mmlt/combination_rare.c host/mmlt/combination_rare.h \
+	host/mmlt/combination_rates.c host/mmlt/combination_rates.h \
 	host/mmlt/combination_stratified.c host/mmlt/combination_stratified.h \
+	host/mmlt/combination_tile.c host/mmlt/combination_tile.h \
 	host/mmlt/combination_variances.c host/mmlt/combination_variances.h \
 	host/mmlt/combined_image.c host/mmlt/combined_image.h \
 	host/mmlt/estimator.c host/mmlt/estimator.h \
@@ -19,6 +21,7 @@ libtwinlight_host_la_SOURCES += \
 	host/mmlt/integrator_mmlt.c \
 	host/mmlt/mmlt.c host/mmlt/mmlt.h \
 	host/mmlt/mmlt_archive.c host/mmlt/mmlt_archive.h \
+	host/mmlt/mmlt_init.c \
 	host/mmlt/paths_estimator.c host/mmlt/paths_estimator.h \
 	host/mmlt/plan.c host/mmlt/plan.h \
 	host/mmlt/pool_estimator.c host/mmlt/pool_estimator.h \

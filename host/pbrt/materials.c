@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "pbrt/coats.h"
 #include "pbrt/errors.h"
+#include "pbrt/hair.h"
 #include "pbrt/late.h"
 #include "pbrt/readers.h"
 #include "pbrt/values.h"
@@ -16,27 +17,17 @@ typedef struct MaterialReader {
     CoatMedium medium; /* of a coat over a conductor */
 } MaterialReader;
 
-static ColorParam color_constant(float value)
-{
-    return (ColorParam){.value = vec3_splat(value), .program = NONE};
-}
-
-static FloatParam float_constant(float value)
-{
-    return (FloatParam){.value = value, .program = NONE};
-}
-
 static Material material_blank(uint kind)
 {
     return (Material){.kind = kind,
-                      .color0 = color_constant(0.5f),
-                      .color1 = color_constant(0.0f),
-                      .roughness_u = float_constant(0.0f),
-                      .roughness_v = float_constant(0.0f),
-                      .amount = float_constant(0.5f),
-                      .displacement = float_constant(0.0f),
-                      .base_u = float_constant(0.0f),
-                      .base_v = float_constant(0.0f),
+                      .color0 = value_color_constant(0.5f),
+                      .color1 = value_color_constant(0.0f),
+                      .roughness_u = value_float_constant(0.0f),
+                      .roughness_v = value_float_constant(0.0f),
+                      .amount = value_float_constant(0.5f),
+                      .displacement = value_float_constant(0.0f),
+                      .base_u = value_float_constant(0.0f),
+                      .base_v = value_float_constant(0.0f),
                       .eta = 1.5f,
                       .scale = 1.0f,
                       .normal_map = NONE,
@@ -54,7 +45,7 @@ static void roughness_check(MaterialReader *r, const char *name, const FloatPara
 /* names: roughness, uroughness, vroughness; the latter two default to the first. */
 static void roughness_pair_read(MaterialReader *r, const char *const names[3], FloatParam *u, FloatParam *v)
 {
-    FloatParam both = float_constant(0.0f);
+    FloatParam both = value_float_constant(0.0f);
     value_float_param(r->im, r->list, names[0], &both);
     *u = *v = both;
     value_float_param(r->im, r->list, names[1], u);
@@ -167,7 +158,7 @@ static void thin_dielectric_read(MaterialReader *r)
 static void diffuse_transmission_read(MaterialReader *r)
 {
     Material *m = &r->material;
-    m->color0 = m->color1 = color_constant(0.25f);
+    m->color0 = m->color1 = value_color_constant(0.25f);
     value_color_param(r->im, r->list, "reflectance", COLOR_REFLECTANCE, &m->color0);
     value_color_param(r->im, r->list, "transmittance", COLOR_REFLECTANCE, &m->color1);
     m->scale = param_float(r->list, "scale", 1.0f);
@@ -179,57 +170,9 @@ static void diffuse_transmission_read(MaterialReader *r)
                        "reflectance and transmittance add up to more than 1: the material creates energy");
 }
 
-/* Reads a roughness of hair, in (0, 1]. */
-static void hair_roughness_read(MaterialReader *r, const char *name, FloatParam *roughness)
-{
-    *roughness = float_constant(0.3f);
-    value_float_param(r->im, r->list, name, roughness);
-    if (roughness->program == NONE && !(roughness->value > 0.0f && roughness->value <= 1.0f))
-        param_error(r->list, name, "\"%s\" must be above 0 and at most 1", name);
-}
-
-static void melanin_read(MaterialReader *r, const char *name, FloatParam *concentration, bool *given)
-{
-    *given |= value_float_param(r->im, r->list, name, concentration);
-    if (concentration->program == NONE && concentration->value < 0.0f)
-        param_error(r->list, name, "\"%s\" is negative", name);
-}
-
-/* Of sigma_a, reflectance (or color) and the pigments, the first that is given counts, as in pbrt. */
-static void hair_color_read(MaterialReader *r)
-{
-    Material *m = &r->material;
-    ColorParam color = color_constant(0.5f);
-    bool melanin = false;
-    bool absorption = value_color_param(r->im, r->list, "sigma_a", COLOR_INDEX, &m->color0);
-    bool colored = value_color_param(r->im, r->list, "reflectance", COLOR_REFLECTANCE, &color);
-    if (!colored)
-        colored = value_color_param(r->im, r->list, "color", COLOR_REFLECTANCE, &color);
-    else
-        param_ignore(r->list, "color");
-    melanin_read(r, "eumelanin", &m->base_u, &melanin);
-    melanin_read(r, "pheomelanin", &m->base_v, &melanin);
-    if (absorption + colored + melanin > 1)
-        log_message_at(LOG_WARNING, r->list->place, "the hair's %s ignored: its %s given",
-                       absorption && colored ? "reflectance and pigments are" : "pigments are",
-                       absorption ? "sigma_a is" : "reflectance is");
-    if (absorption)
-        return;
-    if (!colored && !melanin)
-        m->base_u.value = 1.3f; /* brown */
-    m->flags |= colored ? MATERIAL_HAIR_COLOR : MATERIAL_HAIR_MELANIN;
-    m->color0 = color;
-}
-
 static void hair_read(MaterialReader *r)
 {
-    Material *m = &r->material;
-    hair_color_read(r);
-    hair_roughness_read(r, "beta_m", &m->roughness_u);
-    hair_roughness_read(r, "beta_n", &m->roughness_v);
-    m->amount = float_constant(2.0f);
-    value_float_param(r->im, r->list, "alpha", &m->amount);
-    m->eta = value_eta(r->im, r->list, "eta", 1.55f);
+    hair_material_read(r->im, r->list, &r->material);
 }
 
 /* Resolves one of the two materials named by a mix. */

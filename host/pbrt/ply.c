@@ -3,8 +3,7 @@
 #include "base/array.h"
 #include "base/file_read.h"
 #include "base/gzip.h"
-#include "base/text_number.h"
-#include "pbrt/ply_header.h"
+#include "pbrt/ply_values.h"
 #include "pbrt/polygon.h"
 
 #include <stdlib.h>
@@ -14,141 +13,29 @@
 typedef struct Cursor {
     const PlySource *source;
     const PlyHeader *header;
-    const char *p, *end;
+    PlyReader values;
     PlyMesh *mesh;
     Array triangles, quads; /* uint */
     Array polygons; /* uint: of each, the number of vertices and their indices */
 } Cursor;
-
-static bool truncated(const Cursor *c)
-{
-    return ply_error(c->source, "the file ends too early");
-}
-
-static uint64_t bytes_integer(const char *p, size_t size, bool little)
-{
-    uint64_t value = 0;
-    for (size_t i = 0; i < size; ++i)
-        value |= (uint64_t)(unsigned char)p[i] << (8 * (little ? i : size - 1 - i));
-    return value;
-}
-
-/* Decodes an integer of any type; negative ones become huge. */
-static uint64_t integer_decode(const char *p, PlyType type, bool little)
-{
-    uint64_t raw = bytes_integer(p, ply_type_size(type), little);
-    switch (type) {
-    case PLY_INT8:
-        return (uint64_t)(int8_t)raw;
-    case PLY_INT16:
-        return (uint64_t)(int16_t)raw;
-    case PLY_INT32:
-        return (uint64_t)(int32_t)raw;
-    default:
-        return raw;
-    }
-}
-
-static float float_decode(const char *p, PlyType type, bool little)
-{
-    uint64_t raw = bytes_integer(p, ply_type_size(type), little);
-    if (type == PLY_FLOAT32)
-        return bits_float((uint)raw);
-    if (type == PLY_FLOAT64) {
-        double value;
-        memcpy(&value, &raw, sizeof value);
-        return (float)value;
-    }
-    return (float)(int64_t)integer_decode(p, type, little);
-}
-
-/* Reads the next word of an ascii body. */
-static bool word_next(Cursor *c, const char **word, size_t *length)
-{
-    while (c->p < c->end && (*c->p == ' ' || *c->p == '\n' || *c->p == '\r' || *c->p == '\t'))
-        ++c->p;
-    *word = c->p;
-    while (c->p < c->end && *c->p != ' ' && *c->p != '\n' && *c->p != '\r' && *c->p != '\t')
-        ++c->p;
-    *length = (size_t)(c->p - *word);
-    return *length > 0 || truncated(c);
-}
-
-static bool not_a_number(const Cursor *c, const char *word, size_t length)
-{
-    return ply_error(c->source, "expected a number, found %.*s", (int)(length < 40 ? length : 40), word);
-}
-
-static bool integer_next(Cursor *c, PlyType type, uint64_t *value)
-{
-    if (c->header->format == PLY_ASCII) {
-        const char *word;
-        size_t length;
-        int number;
-        if (!word_next(c, &word, &length))
-            return false;
-        if (number_integer(word, length, &number) != NUMBER_OK)
-            return not_a_number(c, word, length);
-        *value = (uint64_t)number;
-        return true;
-    }
-    size_t size = ply_type_size(type);
-    if ((size_t)(c->end - c->p) < size)
-        return truncated(c);
-    *value = integer_decode(c->p, type, c->header->format == PLY_LITTLE_ENDIAN);
-    c->p += size;
-    return true;
-}
-
-static bool float_next(Cursor *c, PlyType type, float *value)
-{
-    if (c->header->format == PLY_ASCII) {
-        const char *word;
-        size_t length;
-        return word_next(c, &word, &length) &&
-               (number_float(word, length, value) == NUMBER_OK || not_a_number(c, word, length));
-    }
-    size_t size = ply_type_size(type);
-    if ((size_t)(c->end - c->p) < size)
-        return truncated(c);
-    *value = float_decode(c->p, type, c->header->format == PLY_LITTLE_ENDIAN);
-    c->p += size;
-    return true;
-}
-
-static bool values_skip(Cursor *c, PlyType type, uint64_t count)
-{
-    if (c->header->format != PLY_ASCII) {
-        if (count > (uint64_t)(c->end - c->p) / ply_type_size(type))
-            return truncated(c);
-        c->p += count * ply_type_size(type);
-        return true;
-    }
-    const char *word;
-    size_t length;
-    for (uint64_t i = 0; i < count; ++i)
-        if (!word_next(c, &word, &length))
-            return false;
-    return true;
-}
 
 /* Reads the `count` indices of one face. */
 static bool face_next(Cursor *c, PlyType type, uint64_t count)
 {
     if (count < 3) {
         ++c->mesh->small_count;
-        return values_skip(c, type, count);
+        return ply_values_skip(&c->values, type, count);
     }
-    size_t least = c->header->format == PLY_ASCII ? 2 : ply_type_size(type);
-    if (count >= NONE || count > ((uint64_t)(c->end - c->p) + 1) / least)
-        return truncated(c);
+    size_t least = c->values.format == PLY_ASCII ? 2 : ply_type_size(type);
+    if (count >= NONE || count > ((uint64_t)(c->values.end - c->values.p) + 1) / least)
+        return ply_truncated(&c->values);
     Array *faces = count == 3 ? &c->triangles : count == 4 ? &c->quads : &c->polygons;
     uint *out = array_grow(faces, (size_t)count + (count > 4 ? 1 : 0), c->source->error);
     if (out && count > 4)
         *out++ = (uint)count;
     for (uint64_t i = 0; out && i < count; ++i) {
         uint64_t index = 0;
-        if (!integer_next(c, type, &index))
+        if (!ply_integer_next(&c->values, type, &index))
             return false;
         out[i] = index < NONE ? (uint)index : NONE;
     }
@@ -168,16 +55,16 @@ static bool property_next(Cursor *c, const PlyProperty *property, size_t index)
 {
     uint64_t count = 1;
     if (property->count_type != PLY_NONE) {
-        if (!integer_next(c, property->count_type, &count))
+        if (!ply_integer_next(&c->values, property->count_type, &count))
             return false;
         if (property->meaning == PLY_INDICES)
             return face_next(c, property->type, count);
     }
     if (property->meaning == PLY_IGNORED)
-        return values_skip(c, property->type, count);
+        return ply_values_skip(&c->values, property->type, count);
     size_t stride;
     float *target = meaning_target(c->mesh, property->meaning, &stride);
-    return float_next(c, property->type, &target[stride * index]);
+    return ply_float_next(&c->values, property->type, &target[stride * index]);
 }
 
 /* Reads any element value by value. */
@@ -206,8 +93,8 @@ static size_t element_least_bytes(const PlyHeader *header, const PlyElement *ele
  * separator. */
 static bool element_fits(const Cursor *c, const PlyElement *element)
 {
-    size_t least = element_least_bytes(c->header, element), left = (size_t)(c->end - c->p) + 1;
-    return least == 0 || element->count <= left / least || truncated(c);
+    size_t least = element_least_bytes(c->header, element), left = (size_t)(c->values.end - c->values.p) + 1;
+    return least == 0 || element->count <= left / least || ply_truncated(&c->values);
 }
 
 static bool has_meaning(const PlyElement *element, PlyMeaning meaning)
@@ -228,12 +115,12 @@ static bool floats_take(float **out, size_t count, Error *error)
 static bool vertices_strided(Cursor *c, const PlyElement *element)
 {
     size_t stride = element_least_bytes(c->header, element), offset = 0;
-    bool little = c->header->format == PLY_LITTLE_ENDIAN;
-    if (element->count > (size_t)(c->end - c->p) / stride)
-        return truncated(c);
+    bool little = c->values.format == PLY_LITTLE_ENDIAN;
+    if (element->count > (size_t)(c->values.end - c->values.p) / stride)
+        return ply_truncated(&c->values);
     for (int k = 0; k < element->property_count; ++k) {
         const PlyProperty *property = &element->properties[k];
-        const char *from = c->p + offset;
+        const char *from = c->values.p + offset;
         size_t step;
         offset += ply_type_size(property->type);
         if (property->meaning == PLY_IGNORED)
@@ -241,12 +128,12 @@ static bool vertices_strided(Cursor *c, const PlyElement *element)
         float *to = meaning_target(c->mesh, property->meaning, &step);
         if (property->type == PLY_FLOAT32 && little)
             for (size_t i = 0; i < element->count; ++i)
-                to[step * i] = bits_float((uint)bytes_integer(from + stride * i, 4, true));
+                to[step * i] = bits_float((uint)ply_bytes_integer(from + stride * i, 4, true));
         else
             for (size_t i = 0; i < element->count; ++i)
-                to[step * i] = float_decode(from + stride * i, property->type, little);
+                to[step * i] = ply_float_decode(from + stride * i, property->type, little);
     }
-    c->p += stride * element->count;
+    c->values.p += stride * element->count;
     return true;
 }
 
@@ -262,20 +149,20 @@ static bool vertices_read(Cursor *c, const PlyElement *element)
     bool lists = false;
     for (int k = 0; k < element->property_count; ++k)
         lists = lists || element->properties[k].count_type != PLY_NONE;
-    return lists || c->header->format == PLY_ASCII ? element_walk(c, element) : vertices_strided(c, element);
+    return lists || c->values.format == PLY_ASCII ? element_walk(c, element) : vertices_strided(c, element);
 }
 
 /* Fast path for the usual face, a list of 32-bit indices after a count of one byte: reads triangles until another kind
  * of face; returns how many. */
 static size_t triangles_packed(Cursor *c, size_t count)
 {
-    bool little = c->header->format == PLY_LITTLE_ENDIAN;
-    size_t most = (size_t)(c->end - c->p) / 13, done = 0;
+    bool little = c->values.format == PLY_LITTLE_ENDIAN;
+    size_t most = (size_t)(c->values.end - c->values.p) / 13, done = 0;
     most = most < count ? most : count;
     uint *out = array_grow(&c->triangles, 3 * most, c->source->error);
-    for (; out && done < most && c->p[0] == 3; ++done, c->p += 13)
+    for (; out && done < most && c->values.p[0] == 3; ++done, c->values.p += 13)
         for (size_t k = 0; k < 3; ++k) {
-            uint index = (uint)bytes_integer(c->p + 1 + 4 * k, 4, little);
+            uint index = (uint)ply_bytes_integer(c->values.p + 1 + 4 * k, 4, little);
             out[3 * done + k] = index;
         }
     c->triangles.count -= out ? 3 * (most - done) : 0;
@@ -286,7 +173,7 @@ static bool faces_read(Cursor *c, const PlyElement *element)
 {
     const PlyProperty *first = &element->properties[0];
     PlyElement rest = *element;
-    if (c->header->format != PLY_ASCII && element->property_count == 1 && ply_type_size(first->count_type) == 1 &&
+    if (c->values.format != PLY_ASCII && element->property_count == 1 && ply_type_size(first->count_type) == 1 &&
         ply_type_size(first->type) == 4)
         rest.count -= triangles_packed(c, element->count);
     return element_walk(c, &rest);
@@ -354,7 +241,10 @@ bool ply_read_memory(const char *path, SourcePlace place, const char *data, size
     *mesh = (PlyMesh){0};
     if (!ply_header_read(&source, data, size, &header))
         return false;
-    Cursor c = {.source = &source, .header = &header, .p = data + header.size, .end = data + size, .mesh = mesh};
+    Cursor c = {.source = &source,
+                .header = &header,
+                .values = {&source, header.format, data + header.size, data + size},
+                .mesh = mesh};
     array_init(&c.triangles, sizeof(uint));
     array_init(&c.quads, sizeof(uint));
     array_init(&c.polygons, sizeof(uint));

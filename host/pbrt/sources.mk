@@ -5,6 +5,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/directives.c host/pbrt/directives.h \
 	host/pbrt/errors.c host/pbrt/errors.h \
 	host/pbrt/film_camera.c \
+	host/pbrt/hair.c host/pbrt/hair.h \
 	host/pbrt/import.c host/pbrt/import.h \
 	host/pbrt/import_options.h \
 	host/pbrt/late.c host/pbrt/late.h \
@@ -25,6 +26,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/parser.c host/pbrt/parser.h \
 	host/pbrt/ply.c host/pbrt/ply.h \
 	host/pbrt/ply_header.c host/pbrt/ply_header.h \
+	host/pbrt/ply_values.c host/pbrt/ply_values.h \
 	host/pbrt/polygon.c host/pbrt/polygon.h \
 	host/pbrt/readers.h \
 	host/pbrt/ribbon.c host/pbrt/ribbon.h \
@@ -32,6 +34,8 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/shapes.c \
 	host/pbrt/state.c host/pbrt/state.h \
 	host/pbrt/subdivide.c host/pbrt/subdivide.h \
+	host/pbrt/subdivide_level.h host/pbrt/subdivide_limit.c \
 	host/pbrt/texture_builder.h host/pbrt/texture_procedural.c \
 	host/pbrt/textures.c \
+	host/pbrt/transforms.c host/pbrt/transforms.h \
 	host/pbrt/values.c host/pbrt/values.h

@@ -16,6 +16,17 @@ bool value_color_param(PbrtImport *im, ParamList *list, const char *name, ColorR
 /* A float or a float texture, likewise. */
 bool value_float_param(PbrtImport *im, ParamList *list, const char *name, FloatParam *out);
 
+/* Parameters that no texture varies. */
+static inline ColorParam value_color_constant(float value)
+{
+    return (ColorParam){.value = vec3_splat(value), .program = NONE};
+}
+
+static inline FloatParam value_float_constant(float value)
+{
+    return (FloatParam){.value = value, .program = NONE};
+}
+
 /* The texture named by a parameter of type texture, as an index into im->textures. NONE if the list has failed. */
 uint value_texture_index(PbrtImport *im, ParamList *list, const Param *param, bool spectrum);
 

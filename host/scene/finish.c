@@ -1,14 +1,13 @@
 /* Derives what the kernels read from the arrays filled by an importer: order, bounds, features, tables. */
 #include "scene/scene.h"
 
-#include "bsdf/material.h"
 #include "geometry/box.h"
 #include "light/delta.h"
 #include "scene/aim_setup.h"
 #include "scene/camera_setup.h"
 #include "scene/center.h"
-#include "scene/coat_base_table.h"
-#include "scene/coat_table.h"
+#include "scene/coats_setup.h"
+#include "scene/features.h"
 #include "scene/filter_setup.h"
 #include "scene/light_guide_setup.h"
 #include "scene/light_setup.h"
@@ -199,227 +198,6 @@ static float light_reach(const Scene *scene, const Light *light)
     return vec3_max_abs(params->world_center) + fmaxf(1.5f * params->world_radius, portal + params->world_radius);
 }
 
-/* ---- features ---------------------------------------------------------------------------------------------------- */
-
-#define FEATURE_OF(NAME, name, text, traits) [MATERIAL_##NAME] = FEATURE_BIT(NAME),
-static const ulong FEATURE_OF_MATERIAL[MATERIAL_KINDS] = {MATERIAL_LIST(FEATURE_OF)};
-#undef FEATURE_OF
-
-/* The alpha that the kernels use for a constant roughness. */
-static float material_alpha(const Material *m, const FloatParam *roughness)
-{
-    return alpha_from_roughness(m->flags, roughness->value);
-}
-
-static bool roughness_is_rough(const Material *m, const FloatParam *roughness)
-{
-    return roughness->program != NONE || material_alpha(m, roughness) >= ALPHA_DELTA;
-}
-
-/* The surface itself or, of a coated one, the coat. */
-static bool interface_is_rough(const Material *m)
-{
-    return roughness_is_rough(m, &m->roughness_u) || roughness_is_rough(m, &m->roughness_v);
-}
-
-static bool base_is_rough(const Material *m)
-{
-    return m->kind == MATERIAL_COATED_CONDUCTOR &&
-           (roughness_is_rough(m, &m->base_u) || roughness_is_rough(m, &m->base_v));
-}
-
-bool scene_material_is_rough(const Material *m)
-{
-    return m->kind != MATERIAL_MIX && (bsdf_traits(m->kind) & TRAIT_MICROFACET) != 0u &&
-           (interface_is_rough(m) || base_is_rough(m));
-}
-
-bool scene_material_has_delta(const Scene *scene, uint material)
-{
-    if (material == NONE)
-        return false;
-    const Material *m = &ARRAY_AT(&scene->materials, Material, material);
-    if (m->kind == MATERIAL_MIX) /* of materials that were known before it: no cycles */
-        return scene_material_has_delta(scene, m->mix_a) || scene_material_has_delta(scene, m->mix_b);
-    return (bsdf_traits(m->kind) & TRAIT_DELTA) != 0u && !scene_material_is_rough(m);
-}
-
-bool scene_has_delta(const Scene *scene)
-{
-    for (size_t i = 0; i < scene->materials.count; ++i)
-        if (scene_material_has_delta(scene, (uint)i))
-            return true;
-    return false;
-}
-
-bool scene_has_invisible_light(const Scene *scene)
-{
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        if ((ARRAY_AT(&scene->lights, Light, i).flags & LIGHT_INVISIBLE) != 0)
-            return true;
-    return false;
-}
-
-bool scene_hides_light(const Scene *scene)
-{
-    return scene_has_delta(scene) && ((scene->features & FEATURE_DELTA_LIGHT) != 0 || scene_has_invisible_light(scene));
-}
-
-/* Of hair, whose frame follows the tangent. */
-static ulong hair_features(const Material *m)
-{
-    return FEATURE_TANGENTS | (m->base_u.program != NONE || m->base_v.program != NONE ? FEATURE_TEXTURE : 0u);
-}
-
-/* Of a coated conductor, whose record is kept with what rough lobes need. */
-static ulong base_features(const Material *m)
-{
-    ulong features = FEATURE_ROUGH;
-    if (m->base_u.program != m->base_v.program || m->base_u.value != m->base_v.value)
-        features |= FEATURE_TANGENTS;
-    return m->base_u.program != NONE || m->base_v.program != NONE ? features | FEATURE_TEXTURE : features;
-}
-
-static ulong material_features(const Material *m)
-{
-    ulong features = FEATURE_OF_MATERIAL[m->kind];
-    if (scene_material_is_rough(m))
-        features |= FEATURE_ROUGH;
-    if (m->kind == MATERIAL_COATED_CONDUCTOR)
-        features |= base_features(m);
-    if (m->kind == MATERIAL_HAIR)
-        features |= hair_features(m);
-    if (m->normal_map != NONE || m->displacement.program != NONE)
-        features |= FEATURE_BUMP | FEATURE_TEXTURE | FEATURE_TANGENTS;
-    if (m->roughness_u.program != m->roughness_v.program || m->roughness_u.value != m->roughness_v.value)
-        features |= FEATURE_TANGENTS;
-    if (m->color0.program != NONE || m->color1.program != NONE || m->roughness_u.program != NONE ||
-        m->roughness_v.program != NONE || m->amount.program != NONE)
-        features |= FEATURE_TEXTURE;
-    return features;
-}
-
-static ulong geometry_features(const Scene *scene)
-{
-    ulong features = scene->instances.count > 0 ? FEATURE_INSTANCE : 0u;
-    for (size_t s = 0; s < scene->shapes.count; ++s) {
-        const Shape *shape = &ARRAY_AT(&scene->shapes, Shape, s);
-        features |= shape->alpha != NONE ? FEATURE_ALPHA | FEATURE_TEXTURE : 0u;
-        features |= shape->flags & SHAPE_HAS_NORMALS ? FEATURE_NORMALS : 0u;
-    }
-    /* FEATURE_TRIANGLE << kind: the kinds have consecutive bits in the order of their numbers */
-    for (size_t i = 0; i < scene->primitives.count; ++i)
-        features |=
-            FEATURE_TRIANGLE << (ARRAY_AT(&scene->primitives, Primitive, i).shape_and_kind >> PRIMITIVE_KIND_SHIFT);
-    return features;
-}
-
-#define FEATURE_OF(NAME, name, text, feature, position) [LIGHT_##NAME] = (feature),
-static const ulong FEATURE_OF_LIGHT[LIGHT_KINDS] = {LIGHT_LIST(FEATURE_OF)};
-#undef FEATURE_OF
-
-void scene_features_set(Scene *scene, ulong features)
-{
-    scene->features = features;
-    scene->frame.scene.features[0] = (uint)features;
-    scene->frame.scene.features[1] = (uint)(features >> 32);
-}
-
-static ulong scene_features(const Scene *scene)
-{
-    ulong features = geometry_features(scene);
-    for (size_t i = 0; i < scene->materials.count; ++i)
-        features |= material_features(&ARRAY_AT(&scene->materials, Material, i));
-    for (size_t i = 0; i < scene->lights.count; ++i)
-        features |= FEATURE_OF_LIGHT[light_kind(&ARRAY_AT(&scene->lights, Light, i))];
-    for (size_t i = 0; i < scene->texture_ops.count; ++i)
-        features |= ARRAY_AT(&scene->texture_ops, TextureOp, i).code >= TEXTURE_FBM ? FEATURE_PROCEDURAL : 0u;
-    if (scene->camera_settings.lens_radius > 0.0f)
-        features |= FEATURE_LENS;
-    if (scene->camera_settings.kind >= CAMERA_EQUAL_AREA)
-        features |= FEATURE_SPHERICAL_CAMERA;
-    return features | media_features(scene);
-}
-
-/* ---- tables of coats --------------------------------------------------------------------------------------------- */
-
-static bool roughness_is_textured(const Material *m)
-{
-    return m->roughness_u.program != NONE || m->roughness_v.program != NONE;
-}
-
-/* Building a table takes milliseconds, and every coated material is compared with all of them. */
-#define COATS_MAX 4096
-
-/* Whether m can use the table of `other`. */
-static bool coat_serves(const Material *m, const Material *other)
-{
-    if (other->kind != m->kind || (m->kind == MATERIAL_COATED_CONDUCTOR && other->scale != m->scale))
-        return false;
-    if (other->eta != m->eta || roughness_is_textured(m) != roughness_is_textured(other))
-        return false;
-    return roughness_is_textured(m) ||
-           (material_alpha(m, &m->roughness_u) == material_alpha(other, &other->roughness_u) &&
-            material_alpha(m, &m->roughness_v) == material_alpha(other, &other->roughness_v));
-}
-
-static bool interface_build(const Material *m, Array *lookup, uint32_t *first, Error *error)
-{
-    if (roughness_is_textured(m))
-        return coat_table_build_range(m->eta, lookup, first, error);
-    return coat_table_build(material_alpha(m, &m->roughness_u), material_alpha(m, &m->roughness_v), m->eta, lookup,
-                            first, error);
-}
-
-static bool coat_build(Material *m, Array *lookup, Error *error)
-{
-    uint32_t interface; /* follows the record */
-    if (m->kind != MATERIAL_COATED_CONDUCTOR)
-        return interface_build(m, lookup, &m->coat_table, error);
-    return coat_base_build(m->eta, m->scale, interface_is_rough(m), lookup, &m->coat_table, error) &&
-           (!interface_is_rough(m) || interface_build(m, lookup, &interface, error));
-}
-
-/* Sets the table of m: that of an equal material in `owners` (uint), or a new one, which makes m an owner. */
-static bool coat_find(Scene *scene, Array *owners, uint index, Error *error)
-{
-    Material *m = &ARRAY_AT(&scene->materials, Material, index);
-    for (size_t j = 0; j < owners->count; ++j) {
-        const Material *other = &ARRAY_AT(&scene->materials, Material, ARRAY_AT(owners, uint, j));
-        if (coat_serves(m, other)) {
-            m->coat_table = other->coat_table;
-            return true;
-        }
-    }
-    if (owners->count >= COATS_MAX) {
-        error_set(error, "the scene has more than %d different coats", COATS_MAX);
-        return error_fix(error, "give coated materials fewer values of roughness, eta and thickness");
-    }
-    uint *owner = array_grow(owners, 1, error);
-    if (!owner)
-        return false;
-    *owner = index;
-    return coat_build(m, &scene->lookup, error);
-}
-
-/* Builds the tables of rough coats and of all coats over conductors; materials with equal coats share one. */
-static bool scene_coat_tables(Scene *scene, Error *error)
-{
-    Array owners;
-    bool good = true;
-    array_init(&owners, sizeof(uint));
-    for (size_t i = 0; good && i < scene->materials.count; ++i) {
-        Material *m = &ARRAY_AT(&scene->materials, Material, i);
-        m->coat_table = NONE;
-        if (m->kind == MATERIAL_COATED_DIFFUSE)
-            m->color1.value.y = coat_round_trip(m->eta, m->color1.value.x);
-        if (m->kind == MATERIAL_COATED_CONDUCTOR || (m->kind == MATERIAL_COATED_DIFFUSE && scene_material_is_rough(m)))
-            good = coat_find(scene, &owners, (uint)i, error);
-    }
-    array_destroy(&owners);
-    return good;
-}
-
 /* ---- entry points ------------------------------------------------------------------------------------------------ */
 
 bool scene_film_set(Scene *scene, int width, int height, const int crop[4], Error *error)
@@ -459,7 +237,7 @@ bool scene_finish(Scene *scene, Error *error)
         return false;
     scene_features_set(scene, scene_features(scene));
     scene->primitive_count = scene->primitives.count;
-    if (!scene_coat_tables(scene, error) ||
+    if (!coats_setup(scene, error) ||
         !filter_setup(&scene->filter_settings, &scene->lookup, &scene->frame.film.filter, error))
         return false;
     if (!media_lights_setup(scene, error) || !light_setup(scene, error))

@@ -8,8 +8,10 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/coat_base_table.c host/scene/coat_base_table.h \
 	host/scene/coat_medium.c host/scene/coat_medium.h \
 	host/scene/coat_table.c host/scene/coat_table.h \
+	host/scene/coats_setup.c host/scene/coats_setup.h \
 	host/scene/distribution_build.c host/scene/distribution_build.h \
 	host/scene/far_lights.c host/scene/far_lights.h \
+	host/scene/features.c host/scene/features.h \
 	host/scene/filter_setup.c host/scene/filter_setup.h \
 	host/scene/finish.c \
 	host/scene/format.c host/scene/format.h \
@@ -20,6 +22,7 @@ libtwinlight_host_la_SOURCES += \
 	host/scene/pack.c host/scene/pack.h \
 	host/scene/portal_setup.c host/scene/portal_setup.h \
 	host/scene/aim_setup.c host/scene/aim_setup.h \
+	host/scene/primitive_area.c host/scene/primitive_area.h \
 	host/scene/scene.c host/scene/scene.h \
 	host/scene/separations.c host/scene/separations.h \
 	host/scene/smooth_boxes.c host/scene/smooth_boxes.h \

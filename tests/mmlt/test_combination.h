@@ -2,6 +2,7 @@
 #ifndef TWINLIGHT_TESTS_MMLT_TEST_COMBINATION_H
 #define TWINLIGHT_TESTS_MMLT_TEST_COMBINATION_H
 
+#include "mmlt/combination_rates.h"
 #include "mmlt/combined_image.h"
 #include "support/test_util.h"
 

@@ -1,0 +1,16 @@
+/* Surface areas of primitives in world space, in double. */
+#ifndef TWINLIGHT_SCENE_PRIMITIVE_AREA_H
+#define TWINLIGHT_SCENE_PRIMITIVE_AREA_H
+
+#include "scene/scene.h"
+
+double triangle_area(Vec3 a, Vec3 b, Vec3 c);
+
+/* Of a quadric of a PRIMITIVE_* kind, by the midpoint rule with so many points per parameter: exact if its transform is
+ * a similarity. */
+double quadric_area(const Quadric *quadric, uint kind, int steps);
+
+/* Enough for the area of an emissive quadric. */
+#define QUADRIC_STEPS 64
+
+#endif
