@@ -1,6 +1,6 @@
 #!/bin/sh
 # End-to-end tests of `twinlight bench`: a tiny report whose figures are recomputed from its images, resuming after an
-# earlier call, and signals. Runs in the build folder; srcdir is the source folder (both set by `make check`).
+# earlier call, and signals. And the list of variants for bench_ablation.sh. Runs in the build folder; srcdir is the source folder (both set by `make check`).
 set -u
 
 # shellcheck source=tests/support/cli.sh
@@ -18,6 +18,15 @@ expect 1 'nowhere/report.html' bench -o nowhere/report.html "$scene"
 expect 1 'missing.pbrt' bench --times=9s "$scene" missing.pbrt
 expect 1 'missing.exr' bench --times=9s --reference=missing.exr "$scene"
 expect 1 'the patch wall reaches beyond the film' bench --resolution=32x24 --patch=wall:20,0,13,4 "$scene"
+
+# Every variant of bench/ablation.txt changes the file that it names: it would be measured against itself otherwise.
+sources=${scene%/scenes/*}
+while IFS="$(printf '\t')" read -r variant file expression; do
+    case $variant in '' | '#'*) continue ;; esac
+    [ "$file" != + ] || continue
+    ! sed "$expression" "$sources/$file" | cmp -s - "$sources/$file"
+    result "bench/ablation.txt: $variant changes nothing in $file" $?
+done <"$sources/bench/ablation.txt"
 
 # tiny ARGUMENT...: a report of two integrators at two times.
 tiny() {
