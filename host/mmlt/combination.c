@@ -136,7 +136,7 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
     } else {
         double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
-        double bidirectional = bidirectional_work(samples);
+        double bidirectional = estimator_work(ESTIMATOR_BIDIRECTIONAL, samples);
         double all = 2.0 * pool + paths + bidirectional;
         tile->weight[ESTIMATOR_CHAINS] = tile->weight[ESTIMATOR_POOL] = pool / all;
         tile->weight[ESTIMATOR_PATHS] = paths / all;
@@ -150,8 +150,8 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
  * compare; and, but for bidirectional path tracing, less while variances are not known. */
 static double generation_worth(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool known)
 {
-    double work = estimators_work(samples), bidirectional = bidirectional_work(samples), best[ESTIMATOR_COUNT],
-           most = bidirectional > 0.0 ? WORTH_BIDIRECTIONAL_MOST : WORTH_MOST;
+    double work = estimators_work(samples), bidirectional = estimator_work(ESTIMATOR_BIDIRECTIONAL, samples),
+           best[ESTIMATOR_COUNT], most = bidirectional > 0.0 ? WORTH_BIDIRECTIONAL_MOST : WORTH_MOST;
     if (!known || !(combination->best[ESTIMATOR_PATHS] > 0.0) ||
         (bidirectional > 0.0 && !combination->ready[ESTIMATOR_BIDIRECTIONAL]))
         return FIRST_WORTH * (work - bidirectional) + bidirectional;

@@ -90,11 +90,6 @@ static CombinationTile tile_varied(const CombinationTile *known, double factor)
     return tile;
 }
 
-double bidirectional_work(const double samples[ESTIMATOR_COUNT])
-{
-    return estimator_cost(ESTIMATOR_BIDIRECTIONAL) * samples[ESTIMATOR_BIDIRECTIONAL];
-}
-
 /* If the variance of bidirectional path tracing is known: in no tile has it more weight than by the variances of all
  * tiles together, since it has fireflies. */
 CombinationTerms combination_terms(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor,
@@ -103,7 +98,8 @@ CombinationTerms combination_terms(const Combination *combination, const double 
     CombinationTerms terms = others_terms(combination, samples, factor);
     double own = 0.0, others = 0.0, light = combination_mean_light(combination);
     if (!combination->ready[ESTIMATOR_BIDIRECTIONAL])
-        terms.bidirectional_first = bidirectional_work(samples) / fmax(estimators_work(samples), SPREAD_MIN);
+        terms.bidirectional_first =
+            estimator_work(ESTIMATOR_BIDIRECTIONAL, samples) / fmax(estimators_work(samples), SPREAD_MIN);
     if (!(samples[ESTIMATOR_BIDIRECTIONAL] > 0.0) || !combination->ready[ESTIMATOR_BIDIRECTIONAL])
         return terms;
     for (size_t i = 0; i < combination_tile_count(combination); i += every) {

@@ -30,9 +30,6 @@ CombinationTerms combination_terms(const Combination *combination, const double 
 
 TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms);
 
-/* The work of bidirectional path tracing, a part of estimators_work. */
-double bidirectional_work(const double samples[ESTIMATOR_COUNT]);
-
 /* Relative square error of the picture (up to a constant factor) from this many samples of each estimator. with_direct:
  * of all light, and not just of what is combined. every: of one tile in so many. */
 double combination_error(const Combination *combination, const double samples[ESTIMATOR_COUNT], bool with_direct,

@@ -13,11 +13,16 @@ double estimator_cost(EstimatorKind kind)
     return COSTS[kind];
 }
 
+double estimator_work(EstimatorKind kind, const double samples[ESTIMATOR_COUNT])
+{
+    return COSTS[kind] * samples[kind];
+}
+
 double estimators_work(const double samples[ESTIMATOR_COUNT])
 {
     double work = 0.0;
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
-        work += COSTS[s] * samples[s];
+        work += estimator_work((EstimatorKind)s, samples);
     return work;
 }
 

@@ -36,6 +36,9 @@ bool estimator_pass(Estimator *estimator, RenderRun *run, const FrameParams *fra
  * measured ones, so that the image does not depend on the machine. */
 double estimators_work(const double samples[ESTIMATOR_COUNT]);
 
+/* One estimator's part of that. */
+double estimator_work(EstimatorKind kind, const double samples[ESTIMATOR_COUNT]);
+
 /* The cost of one sample. */
 double estimator_cost(EstimatorKind kind);
 
