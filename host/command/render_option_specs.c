@@ -1,5 +1,7 @@
 #include "command/render_option_specs.h"
 
+#include "render/layers.h"
+
 const OptionSpec RENDER_OPTION_SPECS[RENDER_OPTION_COUNT] = {
     [OPTION_OUTPUT] = {"output", 'o', "FILE.exr", "image (default: the name in the scene's Film, or SCENE.exr)"},
     [OPTION_INTEGRATOR] = {"integrator", 0, "NAME",

@@ -5,7 +5,6 @@
 #include "base/options.h"
 #include "base/path_name.h"
 #include "command/mlt_option.h"
-#include "command/render_option_specs.h"
 #include "render/shard.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #define TWINLIGHT_COMMAND_RENDER_OPTIONS_H
 
 #include "backend/choice.h"
-#include "base/options.h"
+#include "command/render_option_specs.h"
 #include "render/layers.h"
 #include "render/render.h"
 #include "serve/watch.h"
@@ -59,67 +59,6 @@ typedef struct RenderCommand {
     bool lenient;
     bool quiet;
 } RenderCommand;
-
-typedef enum RenderOption {
-    OPTION_OUTPUT,
-    OPTION_INTEGRATOR,
-    OPTION_HEURISTIC,
-    OPTION_SAMPLER,
-    OPTION_RECONSTRUCTION,
-    OPTION_STRATEGY,
-    OPTION_UNWEIGHTED,
-    OPTION_SAMPLES,
-    OPTION_TIME,
-    OPTION_ERROR,
-    OPTION_ERROR_PERCENTILE,
-    OPTION_ERROR_OF,
-    OPTION_BACKEND,
-    OPTION_DEVICE,
-    OPTION_BATCH,
-    OPTION_FILM,
-    OPTION_MLT,
-    OPTION_MLT_SCHEME,
-    OPTION_CHAINS,
-    OPTION_STEPS,
-    OPTION_POOL,
-    OPTION_LARGE_STEP,
-    OPTION_MUTATIONS,
-    OPTION_MEMORY,
-    OPTION_SORT,
-    OPTION_NO_SORT,
-    OPTION_NO_GROUP,
-    OPTION_NO_SHIFT,
-    OPTION_NO_AIM,
-    OPTION_NO_BLEND,
-    OPTION_DUMP_BAD,
-    OPTION_THREADS,
-    OPTION_SEED,
-    OPTION_PHOTONS,
-    OPTION_NO_OPENINGS,
-    OPTION_MAX_DEPTH,
-    OPTION_RESOLUTION,
-    OPTION_CROP,
-    OPTION_SHARD,
-    OPTION_PILOT,
-    OPTION_SAVE_EVERY,
-    OPTION_CHECKPOINT,
-    OPTION_CHECKPOINT_EVERY,
-    OPTION_RESUME,
-    OPTION_LAYERS,
-    OPTION_DESPECKLE,
-    OPTION_FRAME,
-    OPTION_PNG,
-    OPTION_NO_PNG,
-    OPTION_EXPOSURE,
-    OPTION_STATS,
-    OPTION_TRACE,
-    OPTION_TEV,
-    OPTION_SERVE,
-    OPTION_VERIFY,
-    OPTION_LENIENT,
-    OPTION_QUIET,
-    RENDER_OPTION_COUNT
-} RenderOption;
 
 /* An option of a command other than render. */
 typedef struct RenderOptionUse {

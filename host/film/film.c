@@ -1,7 +1,6 @@
 #include "film/film.h"
 
 #include "camera/film_spread.h"
-#include "film/film_rows.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 #define TWINLIGHT_FILM_FILM_H
 
 #include "base/archive.h"
+#include "base/parallel.h"
 #include "camera/film_axis.h"
 #include "camera/film_sum.h"
 
@@ -83,6 +84,12 @@ uint64_t film_samples(const Film *film);
 
 /* Number of pixels of the crop. */
 size_t film_pixels(const Film *film);
+
+/* The film as kernels see it, also for reading a const film. */
+FilmView film_view(const Film *film);
+
+/* Calls part(context, row) for every row of pixels, several at a time in large films. */
+void film_rows_run(const Film *film, ParallelPart *part, void *context);
 
 /* Chooses the quantum: a power of two 26 octaves below `mean`, the mean radiance of the image (if 0 or not finite:
  * 2^-30). Only while the film is empty. */

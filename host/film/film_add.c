@@ -1,8 +1,6 @@
 /* Adding films to films, and what devices have summed. */
 #include "film/film.h"
 
-#include "film/film_rows.h"
-
 #include <string.h>
 
 /* Adding a film to another. */

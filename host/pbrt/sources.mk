@@ -34,7 +34,7 @@ libtwinlight_host_la_SOURCES += \
 	host/pbrt/shapes.c \
 	host/pbrt/state.c host/pbrt/state.h \
 	host/pbrt/subdivide.c host/pbrt/subdivide.h \
-	host/pbrt/subdivide_level.h host/pbrt/subdivide_limit.c \
+	host/pbrt/subdivide_level.c host/pbrt/subdivide_level.h \
 	host/pbrt/texture_builder.h host/pbrt/texture_procedural.c \
 	host/pbrt/textures.c \
 	host/pbrt/transforms.c host/pbrt/transforms.h \

@@ -249,7 +249,9 @@ bool subdivide_loop(const float *positions, size_t vertex_count, const uint *ind
         level_destroy(&level);
         level = finer;
     }
-    good = good && result_allocate(&level, out, error) && limit_take(&level, out, error);
+    good = good && result_allocate(&level, out, error) && limit_take(&level, out->positions, out->normals, error);
+    for (size_t i = 0; good && i < 3 * level.face_count; ++i)
+        out->indices[i] = level.faces[i / 3].v[i % 3];
     level_destroy(&level);
     if (!good)
         subdivided_destroy(out);

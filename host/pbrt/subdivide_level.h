@@ -3,7 +3,7 @@
 #define TWINLIGHT_PBRT_SUBDIVIDE_LEVEL_H
 
 #include "base/array.h"
-#include "pbrt/subdivide.h"
+#include "math/platform.h"
 
 /* A triangle: its vertices, and the neighbours across the edges from each vertex to the next; NONE at a boundary. */
 typedef struct Face {
@@ -50,8 +50,8 @@ void ring_blend(const Level *level, uint v, const Array *ring, double inner, dou
 /* Loop's weight of each vertex around one of valence n, by Warren's formula. */
 double loop_weight(size_t n);
 
-/* Moves the vertices to the limit, then takes normals from their new positions, as pbrt does. False when out of
- * memory. */
-bool limit_take(Level *level, SubdividedMesh *out, Error *error);
+/* Moves the vertices to the limit, then takes normals from their new positions, as pbrt does: 3 values each per vertex.
+ * False when out of memory. */
+bool limit_take(Level *level, float *positions, float *normals, Error *error);
 
 #endif

@@ -25,6 +25,12 @@ double triangle_area(Vec3 a, Vec3 b, Vec3 c)
     return 0.5 * length3(n);
 }
 
+bool triangle_degenerate(Vec3 a, Vec3 b, Vec3 c)
+{
+    Vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+    return !(vec3_length_squared(n) > 0.0f) || !(triangle_area(a, b, c) > 0.0);
+}
+
 /* Factor by which the affine transform scales the area element with object-space normal n: |det M| |M^-T n|. */
 static double area_stretch(const Quadric *quadric, const double n[3])
 {
@@ -86,8 +92,7 @@ double quadric_area(const Quadric *quadric, uint kind, int steps)
     return kind == PRIMITIVE_SPHERE ? sphere_area(quadric, steps) : disk_area(quadric);
 }
 
-/* Area of a bilinear patch by the midpoint rule over its Jacobian; exact for parallelograms. */
-static double patch_area(const Vec3 *positions, const Patch *patch)
+double patch_area(const Vec3 *positions, const Patch *patch)
 {
     enum { STEPS = 16 };
     Vec3 p00 = positions[patch->v[0]], p10 = positions[patch->v[1]];
@@ -108,19 +113,4 @@ static double patch_area(const Vec3 *positions, const Patch *patch)
             sum += length3(n);
         }
     return sum / (STEPS * STEPS);
-}
-
-double scene_primitive_area(const Scene *scene, uint primitive)
-{
-    const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, primitive);
-    const Vec3 *positions = scene->positions.data;
-    switch (p->shape_and_kind >> PRIMITIVE_KIND_SHIFT) {
-    case PRIMITIVE_TRIANGLE:
-        return triangle_area(positions[p->a], positions[p->b], positions[p->c]);
-    case PRIMITIVE_BILINEAR:
-        return patch_area(positions, &ARRAY_AT(&scene->patches, Patch, p->a));
-    default:
-        return quadric_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a), p->shape_and_kind >> PRIMITIVE_KIND_SHIFT,
-                            QUADRIC_STEPS);
-    }
 }

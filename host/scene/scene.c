@@ -158,13 +158,6 @@ static bool shape_emit(Scene *scene, uint shape_index, const float *emission, ui
     return true;
 }
 
-/* The kernels divide by squared lengths in float, so a triangle whose normal vanishes in float counts as degenerate. */
-static bool triangle_degenerate(Vec3 a, Vec3 b, Vec3 c)
-{
-    Vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
-    return !(vec3_length_squared(n) > 0.0f) || !(triangle_area(a, b, c) > 0.0);
-}
-
 bool scene_add_mesh(Scene *scene, const MeshData *mesh, Shape shape, const float *emission, uint light_flags,
                     Error *error)
 {
@@ -388,4 +381,19 @@ bool scene_add_portal(Scene *scene, const Portal *portal, uint *index, Error *er
     *stored = *portal;
     *index = (uint)scene->portals.count - 1;
     return true;
+}
+
+double scene_primitive_area(const Scene *scene, uint primitive)
+{
+    const Primitive *p = &ARRAY_AT(&scene->primitives, Primitive, primitive);
+    const Vec3 *positions = scene->positions.data;
+    switch (p->shape_and_kind >> PRIMITIVE_KIND_SHIFT) {
+    case PRIMITIVE_TRIANGLE:
+        return triangle_area(positions[p->a], positions[p->b], positions[p->c]);
+    case PRIMITIVE_BILINEAR:
+        return patch_area(positions, &ARRAY_AT(&scene->patches, Patch, p->a));
+    default:
+        return quadric_area(&ARRAY_AT(&scene->quadrics, Quadric, p->a), p->shape_and_kind >> PRIMITIVE_KIND_SHIFT,
+                            QUADRIC_STEPS);
+    }
 }

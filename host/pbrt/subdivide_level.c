@@ -123,7 +123,7 @@ static void normal_set(const Level *level, uint v, const Array *ring, float norm
         normal[i] = s[(i + 1) % 3] * t[(i + 2) % 3] - s[(i + 2) % 3] * t[(i + 1) % 3];
 }
 
-bool limit_take(Level *level, SubdividedMesh *out, Error *error)
+bool limit_take(Level *level, float *positions, float *normals, Error *error)
 {
     Array ring;
     bool good = true;
@@ -131,16 +131,14 @@ bool limit_take(Level *level, SubdividedMesh *out, Error *error)
     for (size_t v = 0; good && v < level->vertex_count; ++v) {
         good = ring_collect(level, (uint)v, &ring, error);
         double inner = ring.count > 0 ? 1.0 / ((double)ring.count + 3.0 / (8.0 * loop_weight(ring.count))) : 0.0;
-        ring_blend(level, (uint)v, &ring, inner, ring.count > 0 ? 0.2 : 0.0, out->positions + 3 * v);
+        ring_blend(level, (uint)v, &ring, inner, ring.count > 0 ? 0.2 : 0.0, positions + 3 * v);
     }
     for (size_t v = 0; v < level->vertex_count; ++v)
-        memcpy(level->vertices[v].p, out->positions + 3 * v, 3 * sizeof(float));
+        memcpy(level->vertices[v].p, positions + 3 * v, 3 * sizeof(float));
     for (size_t v = 0; good && v < level->vertex_count; ++v) {
         good = ring_collect(level, (uint)v, &ring, error);
-        normal_set(level, (uint)v, &ring, out->normals + 3 * v);
+        normal_set(level, (uint)v, &ring, normals + 3 * v);
     }
-    for (size_t i = 0; i < 3 * level->face_count; ++i)
-        out->indices[i] = level->faces[i / 3].v[i % 3];
     array_destroy(&ring);
     return good;
 }
