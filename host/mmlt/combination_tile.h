@@ -28,6 +28,7 @@ typedef struct CombinationTerms {
 CombinationTerms combination_terms(const Combination *combination, const double samples[ESTIMATOR_COUNT], double factor,
                                    size_t every);
 
+/* The weights of least variance for a tile. */
 TileCombination tile_combination(const CombinationTile *tile, const CombinationTerms *terms);
 
 /* Relative square error of the picture (up to a constant factor) from this many samples of each estimator. with_direct:

@@ -1,6 +1,7 @@
 #!/bin/sh
 # End-to-end tests of `twinlight bench`: a tiny report whose figures are recomputed from its images, resuming after an
-# earlier call, and signals. And the list of variants for bench_ablation.sh. Runs in the build folder; srcdir is the source folder (both set by `make check`).
+# earlier call, and signals. And the list of variants for bench_ablation.sh. Runs in the build folder; srcdir is the
+# source folder (both set by `make check`).
 set -u
 
 # shellcheck source=tests/support/cli.sh
