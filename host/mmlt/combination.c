@@ -194,7 +194,6 @@ void combination_errors(const Combination *combination, const double samples[EST
     bool known = combination_known(combination, samples) && light > 0.0;
     for (size_t i = 0; i < combination_tile_count(combination); ++i) {
         const CombinationTile *tile = &combination->known[i];
-        double square = tile->light * tile->light + DARK_PART * light * light;
-        errors[i] = known ? tile_combination(tile, &terms).variance / square : 0.0;
+        errors[i] = known ? tile_combination(tile, &terms).variance / tile_relative_square(tile, light) : 0.0;
     }
 }

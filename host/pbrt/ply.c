@@ -11,7 +11,6 @@
 
 /* State of reading the body. */
 typedef struct Cursor {
-    const PlySource *source;
     const PlyHeader *header;
     PlyReader values;
     PlyMesh *mesh;
@@ -30,7 +29,7 @@ static bool face_next(Cursor *c, PlyType type, uint64_t count)
     if (count >= NONE || count > ((uint64_t)(c->values.end - c->values.p) + 1) / least)
         return ply_truncated(&c->values);
     Array *faces = count == 3 ? &c->triangles : count == 4 ? &c->quads : &c->polygons;
-    uint *out = array_grow(faces, (size_t)count + (count > 4 ? 1 : 0), c->source->error);
+    uint *out = array_grow(faces, (size_t)count + (count > 4 ? 1 : 0), c->values.source->error);
     if (out && count > 4)
         *out++ = (uint)count;
     for (uint64_t i = 0; out && i < count; ++i) {
@@ -140,7 +139,7 @@ static bool vertices_strided(Cursor *c, const PlyElement *element)
 static bool vertices_read(Cursor *c, const PlyElement *element)
 {
     PlyMesh *mesh = c->mesh;
-    Error *error = c->source->error;
+    Error *error = c->values.source->error;
     mesh->vertex_count = element->count;
     if (!floats_take(&mesh->positions, 3 * element->count, error) ||
         (has_meaning(element, PLY_NX) && !floats_take(&mesh->normals, 3 * element->count, error)) ||
@@ -159,7 +158,7 @@ static size_t triangles_packed(Cursor *c, size_t count)
     bool little = c->values.format == PLY_LITTLE_ENDIAN;
     size_t most = (size_t)(c->values.end - c->values.p) / 13, done = 0;
     most = most < count ? most : count;
-    uint *out = array_grow(&c->triangles, 3 * most, c->source->error);
+    uint *out = array_grow(&c->triangles, 3 * most, c->values.source->error);
     for (; out && done < most && c->values.p[0] == 3; ++done, c->values.p += 13)
         for (size_t k = 0; k < 3; ++k) {
             uint index = (uint)ply_bytes_integer(c->values.p + 1 + 4 * k, 4, little);
@@ -184,8 +183,8 @@ static bool indices_check(const Cursor *c, const uint *indices, size_t count)
     size_t vertex_count = c->mesh->vertex_count;
     for (size_t i = 0; i < count; ++i)
         if (indices[i] >= vertex_count)
-            return ply_error(c->source, "vertex index %d is out of range: the file has %zu vertices", (int)indices[i],
-                             vertex_count);
+            return ply_error(c->values.source, "vertex index %d is out of range: the file has %zu vertices",
+                             (int)indices[i], vertex_count);
     return true;
 }
 
@@ -193,14 +192,14 @@ static bool indices_check(const Cursor *c, const uint *indices, size_t count)
 static bool polygon_add(Cursor *c, const uint *corner, size_t count, Array *scratch)
 {
     scratch->count = 0;
-    uint *out = array_grow(&c->triangles, 3 * (count - 2), c->source->error);
-    uint *room = out ? array_grow(scratch, 3 * count, c->source->error) : NULL;
+    uint *out = array_grow(&c->triangles, 3 * (count - 2), c->values.source->error);
+    uint *room = out ? array_grow(scratch, 3 * count, c->values.source->error) : NULL;
     if (!room)
         return false;
     if (polygon_triangulate(c->mesh->positions, corner, count, out, room))
         return true;
-    return ply_error(c->source, "a face has %zu vertices and is not convex: at most %u can be triangulated", count,
-                     POLYGON_CONCAVE_MAX);
+    return ply_error(c->values.source, "a face has %zu vertices and is not convex: at most %u can be triangulated",
+                     count, POLYGON_CONCAVE_MAX);
 }
 
 /* Polygons wait until all vertices are known, since the element vertex may come last. */
@@ -241,10 +240,7 @@ bool ply_read_memory(const char *path, SourcePlace place, const char *data, size
     *mesh = (PlyMesh){0};
     if (!ply_header_read(&source, data, size, &header))
         return false;
-    Cursor c = {.source = &source,
-                .header = &header,
-                .values = {&source, header.format, data + header.size, data + size},
-                .mesh = mesh};
+    Cursor c = {.header = &header, .values = {&source, header.format, data + header.size, data + size}, .mesh = mesh};
     array_init(&c.triangles, sizeof(uint));
     array_init(&c.quads, sizeof(uint));
     array_init(&c.polygons, sizeof(uint));
