@@ -107,7 +107,8 @@ static bool combination_known(const Combination *combination, const double sampl
     for (int s = 0; s < ESTIMATOR_COUNT; ++s)
         if (s != ESTIMATOR_BIDIRECTIONAL && samples[s] > 0.0 && !combination->ready[s])
             return false;
-    return true;
+    return !combination->paths_trusted || samples[ESTIMATOR_CHAINS] <= 0.0 ||
+           pixel_series_pictures(&combination->sums[ESTIMATOR_CHAINS], 0) >= CHAINS_KNOWN;
 }
 
 /* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
@@ -133,6 +134,8 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
         tile->weight[ESTIMATOR_CHAINS] = others * (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = others * (1.0 - best.paths) * (1.0 - best.chains);
         tile->paths_rare = best.paths_rare;
+    } else if (combination->paths_trusted && samples[ESTIMATOR_PATHS] > 0.0) {
+        tile->weight[ESTIMATOR_PATHS] = tile->paths_rare = 1.0;
     } else {
         double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];

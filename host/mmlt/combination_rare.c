@@ -43,5 +43,5 @@ void combination_rare_update(Combination *combination)
 
 bool combination_rare_hidden(const Combination *combination)
 {
-    return combination->hidden || combination->rare_missed;
+    return !combination->paths_trusted && (combination->hidden || combination->rare_missed);
 }

@@ -26,10 +26,12 @@ static CombinationTerms others_terms(const Combination *combination, const doubl
                                      double factor)
 {
     CombinationTerms terms = {.samples = samples, .correlation = combination->chains_correlation};
-    if (samples[ESTIMATOR_PATHS] > 0.0 && !combination_rare_hidden(combination))
-        terms.rare_most = weight_against(combination->rare_paths / samples[ESTIMATOR_PATHS],
-                                         RARE_DOUBT * terms.correlation * factor * combination->rare_chains /
-                                             samples[ESTIMATOR_CHAINS]);
+    if (!(samples[ESTIMATOR_PATHS] > 0.0) || combination_rare_hidden(combination))
+        return terms;
+    const double own = combination->rare_paths / samples[ESTIMATOR_PATHS],
+                 chains =
+                     RARE_DOUBT * terms.correlation * factor * combination->rare_chains / samples[ESTIMATOR_CHAINS];
+    terms.rare_most = combination->paths_trusted ? 1.0 : weight_against(own, chains);
     return terms;
 }
 

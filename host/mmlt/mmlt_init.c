@@ -88,6 +88,7 @@ static bool combinations_init(Mmlt *mmlt, Error *error)
         if (!combination_init(&mmlt->combinations[replica], &mmlt->film, error))
             return false;
         mmlt->combinations[replica].hidden = mmlt->run->hidden_light;
+        mmlt->combinations[replica].paths_trusted = mmlt->paths.frame.photons.everywhere != 0;
         mmlt->combinations[replica].opened = mmlt->run->frame.openings.count > 0;
         mmlt->combinations[replica].shown = mmlt->options.shown;
         mmlt->combinations[replica].one_sequence = mmlt->paths.sequences == 1 && !mmlt->run->options->independent;

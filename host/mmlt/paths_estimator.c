@@ -41,6 +41,9 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                               .forced_each = 1,
                               .sequences = sequences_of(run)};
     paths->frame.partition.split_direct = !direct_only;
+    paths->frame.photons.everywhere = paths->complete_frame.photons.everywhere =
+        !direct_only && (run->options->chains.photons_everywhere || run->photons_part > PHOTONS_EVERYWHERE_PART) &&
+        film->depth_kinds == 0;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
     return list_make(&paths->own, &paths->frame, integrator_pt(), run, guide, error) &&

@@ -45,6 +45,10 @@
 #define MMLT_PHOTONS_PER_SECOND 32768.0
 #define MMLT_PHOTONS_PER_SAMPLE 0.0625
 
+/* Path tracing draws by photons at all receivers, and is trusted with rare light, if those where no light subpath can
+ * make the path bring more than this part of the light; docs/CAUSTICS.md. */
+#define PHOTONS_EVERYWHERE_PART 0.05
+
 /* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
 #define PATHS_FIRST 1.0
 #define PATHS_DIRECT 0.5
@@ -128,6 +132,9 @@
  * two replicas' estimates of it differ by a factor of two or three. More shows fireflies of path tracing, less shows
  * places where a chain has stayed; docs/TUNING.md. */
 #define RARE_DOUBT 2.0
+
+/* Generations of chains by which their variances count as known where path tracing is trusted with rare light. */
+#define CHAINS_KNOWN 3u
 
 /* Path tracing finds too little of the rare light if the chains' in the whole image exceeds its own by this many of the
  * chains' standard errors, and by this part of all light: chains of a few generations state errors that are too small.

@@ -11,11 +11,11 @@
 /* The kernels of a list. */
 typedef struct PathSteps {
     uint max_depth;
-    bool split; /* direct light is splatted apart */
+    bool split; /* what no other estimator shows is splatted apart */
     bool split_depths; /* what each segment brings is splatted apart */
     bool caustics;
     bool caustic_shadows; /* caustic_has_shadows */
-    bool keeps; /* with `split`: direct light is splatted at the end, in a sum with other light */
+    bool own_last; /* with `split`: that is more than direct light, and splatted at the end */
 } PathSteps;
 
 /* Steps of caustics_record. The first segment has no skip and no shadow ray. */
@@ -61,16 +61,11 @@ static void splat_record(Recorder *recorder, const PathSteps *steps)
     recorder_kernel(recorder, KERNEL_pt_splat, false);
 }
 
-/* What is splatted when a path has ended, or the caustics that belong to it. */
-static void end_record(Recorder *recorder, const PathSteps *steps)
+/* What no other estimator shows. */
+static void own_record(Recorder *recorder)
 {
-    if (steps->keeps && steps->split) {
-        recorder_kernel(recorder, KERNEL_pt_splat_caustics, false);
-        recorder_step(recorder, STEP_SPLAT);
-    } else if (steps->caustics) {
-        recorder_kernel(recorder, KERNEL_pt_add_caustics, false);
-    }
-    splat_record(recorder, steps);
+    recorder_kernel(recorder, KERNEL_pt_splat_own, false);
+    recorder_step(recorder, STEP_SPLAT);
 }
 
 /* The second segment, with which direct light ends, is never skipped if that is split off. Splitting by depth disables
@@ -86,12 +81,8 @@ static void steps_record(Recorder *recorder, const PathSteps *steps)
         if (skips && steps->caustics && depth > (steps->split ? 2u : 1u))
             recorder_skip(recorder, RECORDER_END);
         recorder_kernel(recorder, KERNEL_pt_shade_hits, true);
-        if (steps->split && depth == 2 && steps->keeps) {
-            recorder_kernel(recorder, KERNEL_pt_keep_direct, false);
-        } else if (steps->split && depth == 2) {
-            recorder_kernel(recorder, KERNEL_pt_splat_direct, false);
-            recorder_step(recorder, STEP_SPLAT);
-        }
+        if (steps->split && depth == 2 && !steps->own_last)
+            own_record(recorder);
         if (depth == steps->max_depth)
             break;
         if (steps->split_depths && depth > 2) {
@@ -103,7 +94,9 @@ static void steps_record(Recorder *recorder, const PathSteps *steps)
             recorder_skip(recorder, RECORDER_END);
     }
     recorder_skips_end(recorder);
-    end_record(recorder, steps);
+    if (steps->split && steps->own_last)
+        own_record(recorder);
+    splat_record(recorder, steps);
 }
 
 #define PATH_FIELD(field, words, is_float, name)                                                                       \
@@ -139,13 +132,14 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_GATHERED, 1, false, "gathered"),
     PATH_FIELD(PATH_RECEIVER, RECEIVER_WORDS, true, "receiver"),
     PATH_FIELD(PATH_DELTA, 1, false, "delta lobes"),
-    PATH_FIELD(PATH_CAUSTIC_RADIANCE, 3, true, "radiance by photons and from media"),
+    PATH_FIELD(PATH_OWN, 3, true, "radiance that no other estimator shows"),
     PATH_FIELD(PATH_CAUSTIC_SEGMENTS, 1, false, "segments of the caustic path"),
     PATH_FIELD(PATH_CAUSTIC_LIGHT, 1, false, "light of its photon"),
     PATH_FIELD(PATH_CAUSTIC_BETA, 3, true, "throughput of the caustic path"),
     PATH_FIELD(PATH_RARE, 3, true, "rare radiance"),
     PATH_FIELD(PATH_LIGHT_SHOWN, 1, true, "shown part of the light sample"),
     PATH_FIELD(PATH_OFFSET, 1, false, "place in the pixel's filter"),
+    PATH_FIELD(PATH_CAUSTIC_OVER, 1, true, "path tracing over the caustic path"),
     PATH_FIELD(PATH_LIGHT_PDF, 1, true, "density of the light sample"),
     PATH_FIELD(PATH_LIGHT_OTHER, 1, true, "density of its direction by the BSDF"),
 };
@@ -160,7 +154,7 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
                              .split_depths = frame->film.split_depths != 0,
                              .caustics = frame->photons.count > 0,
                              .caustic_shadows = caustic_has_shadows(frame_features(frame)),
-                             .keeps =
+                             .own_last =
                                  frame->photons.count > 0 || (frame_features(frame) & FEATURE_MEDIUM_EMISSION) != 0};
     size_t per_segment = 11 + (steps.caustics ? caustics_count(&steps) : 0);
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))

@@ -28,6 +28,7 @@ typedef struct ChainOptions {
     /* For tests: 1 + ESTIMATOR_*, to show that estimator and what it leaves to chains, or SHOWN_PATHS_ALONE
      * (mmlt/combination_learn.h); 0: all. */
     int shown;
+    bool photons_everywhere; /* for tests: path tracing draws by photons at all receivers, whatever they bring */
 } ChainOptions;
 
 /* As many photons as the integrator draws by if nothing else is said. */

@@ -69,19 +69,25 @@ static bool has_lights_without_extent(const PhotonMap *photons)
     return false;
 }
 
-bool photon_map_worth(const RenderRun *run, bool *worth, Error *error)
+bool photon_map_part(const RenderRun *run, double *part, Error *error)
 {
     size_t pixels = (size_t)run->frame.film.width * run->frame.film.height;
     uint paths = pixels < WORTH_PATHS ? (uint)pixels : WORTH_PATHS;
-    *worth = run->photons.params.count == 0 || has_lights_without_extent(&run->photons);
-    if (*worth)
+    *part = 0.0;
+    if (run->photons.params.count == 0)
         return true;
     float *luminance[2] = {calloc(pixels, sizeof(float)), calloc(pixels, sizeof(float))};
     bool done = luminance[0] && luminance[1] ? paths_render(run, paths, true, luminance[0], error) &&
                                                    paths_render(run, paths, false, luminance[1], error)
                                              : error_memory(error, 2 * pixels * sizeof(float), "a pilot of photons");
-    *worth = done && part_by_photons(luminance[0], luminance[1], pixels, paths) >= WORTH_PART;
+    if (done)
+        *part = part_by_photons(luminance[0], luminance[1], pixels, paths);
     free(luminance[0]);
     free(luminance[1]);
     return done;
+}
+
+bool photon_map_worth(const PhotonMap *photons, double part)
+{
+    return photons->params.count == 0 || has_lights_without_extent(photons) || part >= WORTH_PART;
 }

@@ -300,11 +300,12 @@ bool render_photons_make(RenderRun *run, const Integrator *integrator, const Sce
         run->past.photons = render_photons(integrator, run->options, run->crop_pixels);
     if (!photon_map_make(run, scene, run->past.photons, &run->photons, error))
         return false;
-    run->photons.params.everywhere = integrator->strategies == STRATEGIES_PT;
-    bool worth = true, asked_for = run->options->photons != PHOTONS_DEFAULT || run->resumed;
-    if (!asked_for && !photon_map_worth(run, &worth, error))
+    const bool paths = integrator->strategies == STRATEGIES_PT;
+    run->photons.params.everywhere = paths;
+    bool asked_for = run->options->photons != PHOTONS_DEFAULT || run->resumed;
+    if (!paths && !photon_map_part(run, &run->photons_part, error))
         return false;
-    if (!worth) {
+    if (!paths && !asked_for && !photon_map_worth(&run->photons, run->photons_part)) {
         log_message(LOG_INFO, "caustic photons bring too little of the light: rendering without");
         photon_map_destroy(&run->photons);
         run->past.photons = 0;

@@ -22,13 +22,6 @@ __kernel void pt_start_caustics(__global const FrameParams *restrict frame, __gl
     caustic_begin(scene, paths, rays, item);
 }
 
-/* Adds light that the caustic path has found. */
-SHARED_FUNCTION void caustic_gather(__global uint *restrict paths, uint stride, uint item, Vec3 light)
-{
-    state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item,
-                     vec3_add(light, state_load_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item)));
-}
-
 /* Takes the caustic path, with throughput *beta, through the media before its hit: gathers its light at a point, which
  * is on the way. */
 SHARED_FUNCTION_APART void caustic_pass_media(const SceneView *scene, __global uint *restrict paths,
@@ -37,7 +30,8 @@ SHARED_FUNCTION_APART void caustic_pass_media(const SceneView *scene, __global u
 {
     uint stride = scene->frame->pass.stride;
     if (SCENE_HAS(scene, FEATURE_DELTA_LIGHT))
-        caustic_gather(paths, stride, item, vec3_mul(*beta, caustic_shadow_radiance(scene, paths, shadows, item)));
+        caustic_gather(scene->frame, paths, item, state_load(paths, stride, PATH_CAUSTIC_SEGMENTS, item),
+                       vec3_mul(*beta, caustic_shadow_radiance(scene, paths, shadows, item)), 1.0f);
     /* Its directions are drawn for paths that pass unscattered. */
     *beta = vec3_mul(*beta, transmittance(hit_depth(hits, stride, item).all));
     state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, *beta);
@@ -64,9 +58,10 @@ __kernel void pt_walk_caustics(__global const FrameParams *restrict frame, __glo
         surface = surface_from_hit(scene, &ray, hit);
     uint segments = state_load(paths, stride, PATH_CAUSTIC_SEGMENTS, item);
     if (segments > state_load(paths, stride, PATH_DEPTH, item) + 1u) {
+        float alpha;
         Vec3 light = caustic_radiance(scene, state_load(paths, stride, PATH_CAUSTIC_LIGHT, item),
-                                      hit.primitive == NONE ? whole : ray, hit, &surface);
-        caustic_gather(paths, stride, item, vec3_mul(light, beta));
+                                      hit.primitive == NONE ? whole : ray, hit, &surface, &alpha);
+        caustic_gather(frame, paths, item, segments, vec3_mul(light, beta), alpha);
     }
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
     if (hit.primitive != NONE &&

@@ -18,6 +18,7 @@
 #include "path/mis.h"
 #include "path/partition.h"
 #include "path/passage.h"
+#include "path/path_gather.h"
 #include "path/path_random.h"
 #include "path/path_state.h"
 
@@ -26,10 +27,8 @@
 #define ROULETTE_FIRST_DEPTH 2u
 #define ROULETTE_THROUGHPUT 0.25f
 
-/* With frame->partition.split_direct, path tracing clamps the light of paths that are deeper than this. */
-#define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
-
-/* Minimum probability of such a path to survive roulette; below it, reweighted survivors would exceed the clamp. */
+/* With frame->partition.split_direct: the least probability of a path to survive roulette; below it, reweighted
+ * survivors would exceed the clamp. */
 #define SURVIVED_LEAST 0.125f
 
 SHARED_FUNCTION void path_end(__global uint *restrict paths, __global uint *restrict rays, uint stride, uint item)
@@ -92,11 +91,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
                           partition_threshold(frame, PARTITION_PATHS) / film_importance(frame, guide, film));
         state_store_float(paths, stride, PATH_SURVIVED, item, 1.0f);
         state_store_vec3(paths, stride, PATH_RARE, item, vec3_splat(0.0f));
+        state_store_vec3(paths, stride, PATH_OWN, item, vec3_splat(0.0f));
     }
     if (frame->photons.count > 0u)
         state_store(paths, stride, PATH_DELTA, item, 0u);
-    if (frame->photons.count > 0u || SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
-        state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item, vec3_splat(0.0f));
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
     if (SCENE_HAS(scene, FEATURE_MEDIUM))
         path_ray_media(scene, paths, rays, item, frame->camera.medium, 1u);
@@ -104,36 +102,6 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         diagnostic_count(diagnostics, DIAGNOSTIC_RAY_RANGE);
         path_end(paths, rays, stride, item);
     }
-}
-
-/* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold
- * (path_shown). */
-SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                       uint segments, Vec3 radiance, float shown)
-{
-    uint stride = frame->pass.stride;
-    if (frame->film.split_depths != 0u)
-        state_store(paths, stride, PATH_GATHERED, item, segments);
-    Vec3 sum = state_load_vec3(paths, stride, PATH_RADIANCE, item);
-    state_store_vec3(paths, stride, PATH_RADIANCE, item, vec3_add(sum, vec3_scale(radiance, shown)));
-    if (shown < 1.0f) {
-        Vec3 rare = state_load_vec3(paths, stride, PATH_RARE, item);
-        state_store_vec3(paths, stride, PATH_RARE, item, vec3_add(rare, vec3_scale(radiance, 1.0f - shown)));
-    }
-}
-
-/* The part of its contribution that a path of `segments` segments shows. path_tracing: the luminance of f over the sum
- * of the densities of s = 0 and 1, the same whichever of them made the path. With frame->partition.split_direct what is
- * below the clamping threshold is shown; the rest is the rare light, which chains (chain/mutation.h) and pt_splat_rare
- * show. */
-SHARED_FUNCTION float path_shown(__global const FrameParams *frame, __global const uint *restrict paths, uint item,
-                                 uint segments, float path_tracing)
-{
-    if (frame->partition.split_direct == 0u || segments <= DIRECT_DEPTH)
-        return 1.0f;
-    float limit = state_load_float(paths, frame->pass.stride, PATH_LIMIT, item);
-    path_tracing *= state_load_float(paths, frame->pass.stride, PATH_SURVIVED, item); /* chains have no roulette */
-    return partition_shown(path_tracing, limit);
 }
 
 /* s = 0: the camera's path hits a light of `radiance`, which light sampling would have found with density `pdf_other`
@@ -151,11 +119,14 @@ SHARED_FUNCTION void path_add_met(const SceneView *scene, __global uint *restric
     }
     Vec3 light = vec3_mul(state_load_vec3(paths, stride, PATH_BETA, item), radiance);
     uint segments = state_load(paths, stride, PATH_DEPTH, item);
-    if (frame->photons.count > 0u)
-        light = vec3_scale(light, receiver_rest(scene, paths, PATH_RECEIVER, item,
-                                                state_load(paths, stride, PATH_DELTA, item), segments - 1u));
-    float shown = path_shown(frame, paths, item, segments, rgb_luminance(light) * balance * alpha);
-    path_add_radiance(frame, paths, item, segments, vec3_scale(light, weight), shown);
+    float rest = 1.0f, luminance = rgb_luminance(light);
+    if (frame->photons.count > 0u) {
+        uint delta = state_load(paths, stride, PATH_DELTA, item);
+        rest = receiver_rest(scene, paths, PATH_RECEIVER, item, delta, segments - 1u);
+        luminance *= receiver_find(0u, delta, segments - 1u) != 0u ? rest : 1.0f;
+    }
+    float shown = path_shown(frame, paths, item, segments, luminance * balance * alpha);
+    path_add_radiance(frame, paths, item, segments, vec3_scale(light, rest * weight), shown);
 }
 
 /* The probability with which the vertex that the path has left chooses the light. */
@@ -220,19 +191,6 @@ SHARED_FUNCTION_APART void path_vertex_in_medium(const SceneView *scene, __globa
     bsdf_store(scene, paths, scene->frame->pass.stride, PATH_BSDF, item, &phase);
 }
 
-/* Adds what media have emitted along the path's latest segment. With frame->partition.split_direct no estimator but
- * path tracing shows it, like direct light. */
-SHARED_FUNCTION_APART void path_add_medium_emission(__global const FrameParams *frame, __global uint *restrict paths,
-                                                    uint item, Vec3 light)
-{
-    uint stride = frame->pass.stride;
-    if (frame->partition.split_direct == 0u)
-        path_add_radiance(frame, paths, item, state_load(paths, stride, PATH_DEPTH, item), light, 1.0f);
-    else
-        state_store_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item,
-                         vec3_add(state_load_vec3(paths, stride, PATH_CAUSTIC_RADIANCE, item), light));
-}
-
 /* Takes the path through the media before its hit: throughput, density, and the light that they emit. */
 SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint *restrict paths,
                                            __global const uint *restrict hits, uint item, bool scattered, Vec3 p)
@@ -241,8 +199,8 @@ SHARED_FUNCTION_APART void path_pass_media(const SceneView *scene, __global uint
     Passage passage = passage_load(scene, hits, stride, item, scattered, p);
     Vec3 beta = state_load_vec3(paths, stride, PATH_BETA, item);
     if (SCENE_HAS(scene, FEATURE_MEDIUM_EMISSION))
-        path_add_medium_emission(scene->frame, paths, item,
-                                 vec3_mul(beta, state_load_vec3(hits, stride, HIT_EMISSION, item)));
+        path_add_own(scene->frame, paths, item, state_load(paths, stride, PATH_DEPTH, item),
+                     vec3_mul(beta, state_load_vec3(hits, stride, HIT_EMISSION, item)));
     state_store_vec3(paths, stride, PATH_BETA, item, vec3_mul(beta, passage.weight));
     state_store_float(paths, stride, PATH_PDF_W, item, state_load_float(paths, stride, PATH_PDF_W, item) * passage.pdf);
 }
@@ -499,49 +457,14 @@ SHARED_FUNCTION void path_splat(__global const FrameParams *frame, __global uint
     state_store_vec3(paths, stride, field, item, vec3_splat(0.0f));
 }
 
-/* From: paths of two segments. To: their light, as a sample of the pixel. Only with frame->partition.split_direct. */
-__kernel void pt_splat_direct(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                              __global uint *restrict splats, __global uint *restrict diagnostics)
+/* Only with frame->partition.split_direct. From: paths of two segments, or if path tracing shows more than direct light
+ * alone (PATH_OWN), finished ones. To: that light, as a sample of the pixel. */
+__kernel void pt_splat_own(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                           __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0);
     if (item < frame->pass.item_count)
-        path_splat(frame, paths, splats, diagnostics, item, PATH_RADIANCE, SPLAT_SAMPLE);
-}
-
-/* Adds what is in the field `from` to the field `to`, and clears it. */
-SHARED_FUNCTION void path_move(__global const FrameParams *frame, __global uint *restrict paths, uint item, uint from,
-                               uint to)
-{
-    uint stride = frame->pass.stride;
-    state_store_vec3(paths, stride, to, item,
-                     vec3_add(state_load_vec3(paths, stride, to, item), state_load_vec3(paths, stride, from, item)));
-    state_store_vec3(paths, stride, from, item, vec3_splat(0.0f));
-}
-
-/* With partition.split_direct and photons or emissive media: from: paths of two segments. To: their light kept until
- * the end, where pt_splat_caustics splats it together with caustics and what media emit. No estimator but path tracing
- * shows any of them. */
-__kernel void pt_keep_direct(__global const FrameParams *restrict frame, __global uint *restrict paths)
-{
-    uint item = (uint)get_global_id(0);
-    if (item < frame->pass.item_count)
-        path_move(frame, paths, item, PATH_RADIANCE, PATH_CAUSTIC_RADIANCE);
-}
-
-__kernel void pt_splat_caustics(__global const FrameParams *restrict frame, __global uint *restrict paths,
-                                __global uint *restrict splats, __global uint *restrict diagnostics)
-{
-    uint item = (uint)get_global_id(0);
-    if (item < frame->pass.item_count)
-        path_splat(frame, paths, splats, diagnostics, item, PATH_CAUSTIC_RADIANCE, SPLAT_SAMPLE);
-}
-
-/* With photons and without partition.split_direct: from: the finished path. To: its caustics added to the rest. */
-__kernel void pt_add_caustics(__global const FrameParams *restrict frame, __global uint *restrict paths)
-{
-    uint item = (uint)get_global_id(0);
-    if (item < frame->pass.item_count)
-        path_move(frame, paths, item, PATH_CAUSTIC_RADIANCE, PATH_RADIANCE);
+        path_splat(frame, paths, splats, diagnostics, item, PATH_OWN, SPLAT_SAMPLE);
 }
 
 /* The bits of a splat for the depth of what the path has gathered; 0 without frame->film.split_depths. */

@@ -10,8 +10,9 @@
 #include "layout/diagnostics.h"
 #include "light/light.h"
 #include "path/caustic_rest.h"
-#include "path/path_random.h"
 #include "path/passage.h"
+#include "path/path_gather.h"
+#include "path/path_random.h"
 #include "path/path_state.h"
 
 /* Random numbers of the receiver after `depth` segments: `what` 0 for the photon and the direction, then the smooth
@@ -67,6 +68,21 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     state_store(paths, stride, PATH_CAUSTIC_SEGMENTS, item, depth + 1u);
     state_store(paths, stride, PATH_CAUSTIC_LIGHT, item, lobe.light);
     state_store_vec3(paths, stride, PATH_CAUSTIC_BETA, item, vec3_scale(beta, 1.0f / density));
+    bool found_by_chance = lobe.light == NONE && value.pdf_w > 0.0f;
+    state_store_float(paths, stride, PATH_CAUSTIC_OVER, item, found_by_chance ? density / value.pdf_w : FLOAT_INFINITY);
+}
+
+/* Adds light that the caustic path of `segments` segments has found. alpha: light_hit_alpha, as in path_add_met. */
+SHARED_FUNCTION void caustic_gather(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                    uint segments, Vec3 light, float alpha)
+{
+    uint stride = frame->pass.stride;
+    if (receiver_draws(0u, state_load(paths, stride, PATH_DELTA, item), state_load(paths, stride, PATH_DEPTH, item))) {
+        path_add_own(frame, paths, item, segments, light);
+        return;
+    }
+    float path_tracing = rgb_luminance(light) * alpha * state_load_float(paths, stride, PATH_CAUSTIC_OVER, item);
+    path_add_radiance(frame, paths, item, segments, light, path_shown(frame, paths, item, segments, path_tracing));
 }
 
 /* ---- lights at the end ------------------------------------------------------------------------------------------- */
@@ -144,9 +160,11 @@ SHARED_FUNCTION Vec3 caustic_delta_radiance(const SceneView *scene, uint light, 
     return caustic_point_radiance(scene, source, ray.d);
 }
 
-/* What the ray of a caustic path brings from lights that it hits, or (surface NULL) from infinity. */
-SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ray, Hit hit, const Surface *surface)
+/* What the ray of a caustic path brings from lights that it hits, or from infinity. *alpha: light_hit_alpha. */
+SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ray, Hit hit, const Surface *surface,
+                                      float *alpha)
 {
+    *alpha = 1.0f;
     if (light != NONE)
         return caustic_delta_radiance(scene, light, ray, hit.primitive == NONE ? FLOAT_INFINITY : hit.t);
     if (hit.primitive == NONE)
@@ -154,8 +172,9 @@ SHARED_FUNCTION Vec3 caustic_radiance(const SceneView *scene, uint light, Ray ra
     __global const Shape *shape = scene->shapes + surface->shape;
     if (!SCENE_HAS(scene, FEATURE_AREA_LIGHT) || shape->first_light == NONE)
         return vec3_splat(0.0f);
-    return light_emitted(scene, shape->first_light + hit.primitive - shape->first_primitive, surface->ng,
-                         vec3_negate(ray.d));
+    uint lamp = shape->first_light + hit.primitive - shape->first_primitive;
+    *alpha = light_hit_alpha(scene, lamp, surface);
+    return light_emitted(scene, lamp, surface->ng, vec3_negate(ray.d));
 }
 
 /* ---- smooth vertices --------------------------------------------------------------------------------------------- */

@@ -6,7 +6,9 @@
  *
  * Where light subpaths can make the path, too, by a connection of two vertices that both scatter otherwise than by a
  * delta lobe (the camera is one), their densities do not depend on the size of the light, and photons are not needed:
- * only path tracing, which has no light subpaths, draws by them there (PhotonParams.everywhere).
+ * only path tracing, which has no light subpaths, draws by them there (PhotonParams.everywhere). Beside MMLT's other
+ * estimators it does so as well, if photons bring much: the factor is then its own, since the others show such paths
+ * without.
  *
  * This file has that factor, and where there are receivers. */
 #ifndef TWINLIGHT_PATH_CAUSTIC_REST_H

@@ -29,7 +29,7 @@
 /* Caustics by photons (path/caustic.h); only with PhotonParams.count */
 #define PATH_RECEIVER 46u /* RECEIVER_WORDS (path/caustic_rest.h) */
 #define PATH_DELTA 53u /* bit i: vertex i scattered by a delta lobe; up to RECEIVER_LAST */
-#define PATH_CAUSTIC_RADIANCE 54u /* gathered by photons, or from media; with split_direct also direct light, 3 */
+#define PATH_OWN 54u /* frame->partition.split_direct: gathered of what no other estimator shows (path_gather.h), 3 */
 #define PATH_CAUSTIC_SEGMENTS 57u /* of the caustic path under way, with its last ray */
 #define PATH_CAUSTIC_LIGHT 58u /* PHOTON_LIGHT of the photon that drew it */
 #define PATH_CAUSTIC_BETA 59u /* its throughput, 3 */
@@ -37,11 +37,13 @@
 #define PATH_RARE 62u /* gathered so far above the clamping threshold, 3 */
 #define PATH_LIGHT_SHOWN 65u /* the part of PATH_LIGHT that is below it */
 #define PATH_OFFSET 66u /* in the pixel's filter (camera/splat_offset.h) */
-#define PATH_WORDS 67u
+/* With photons: throughput with which path tracing without them would find the path, over PATH_CAUSTIC_BETA */
+#define PATH_CAUSTIC_OVER 67u
+#define PATH_WORDS 68u
 /* In scenes with media, where PATH_LIGHT is unweighted */
-#define PATH_LIGHT_PDF 67u /* density of the light sample */
-#define PATH_LIGHT_OTHER 68u /* of its direction by the Bsdf; 0: it cannot be hit */
-#define PATH_MEDIA_WORDS 69u
+#define PATH_LIGHT_PDF 68u /* density of the light sample */
+#define PATH_LIGHT_OTHER 69u /* of its direction by the Bsdf; 0: it cannot be hit */
+#define PATH_MEDIA_WORDS 70u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 

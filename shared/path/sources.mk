@@ -12,6 +12,7 @@ SHARED_FILES += \
 	shared/path/mis.h \
 	shared/path/partition.h \
 	shared/path/passage.h \
+	shared/path/path_gather.h \
 	shared/path/path_random.h \
 	shared/path/path_state.h \
 	shared/path/photon.h \

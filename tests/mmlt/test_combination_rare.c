@@ -1,6 +1,8 @@
 /* Light above the clamping thresholds, which chains show: the excess of pools, and the rare light of path tracing. */
 #include "mmlt/test_combination_estimators.h"
 
+#include "mmlt/tuning.h"
+
 /* The excess that chains show goes with chains and pool, not with path tracing. */
 START_TEST(test_excess)
 {
@@ -115,6 +117,36 @@ START_TEST(test_rare_missed)
 }
 END_TEST
 
+/* Path tracing that is trusted with rare light, as where it draws by photons at all receivers, shows all of it, alone,
+ * until chains have had CHAINS_KNOWN generations, and then by its variance in each tile, also where light may be hidden
+ * or chains have found more, and where fireflies in one tile make its variance in the whole image large. */
+START_TEST(test_trusted)
+{
+    Estimators estimators;
+    estimators_init(&estimators);
+    estimators.combination.hidden = estimators.combination.paths_trusted = true;
+    for (uint g = 0; g < 20; ++g) {
+        estimator_set(&estimators, ESTIMATOR_CHAINS, 4.0, 1.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 3.0);
+        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 0.5, 0.1);
+        for (size_t i = 0; i < PIXELS; ++i) {
+            bool firefly = g % 4 == 0 && i == 0;
+            rare_set(&estimators, i, 0.5 + 0.8 * noise(&estimators),
+                     0.5 + 0.01 * noise(&estimators) + (firefly ? 1000.0 : 0.0));
+        }
+        generation(&estimators);
+        const Combination *known = &estimators.combination;
+        ck_assert(g >= CHAINS_KNOWN || (known->weight[ESTIMATOR_PATHS] == 1.0 && known->paths_rare == 1.0));
+    }
+    combination_rates(&estimators.combination);
+    double rare = estimators.combination.paths_rare;
+    printf("trusted: weight of rare light, without that of one of 16 tiles and those around it, %.3f\n", rare);
+    ck_assert(rare > 0.7 && rare < 0.8);
+    ck_assert_double_lt(combination_alone_error(&estimators.combination), DBL_MAX);
+    estimators_destroy(&estimators);
+}
+END_TEST
+
 TCase *combination_rare_tests(void)
 {
     TCase *tcase = tcase_create("rare");
@@ -122,5 +154,6 @@ TCase *combination_rare_tests(void)
     tcase_add_loop_test(tcase, test_rare, 0, 2);
     tcase_add_test(tcase, test_fireflies);
     tcase_add_loop_test(tcase, test_rare_missed, 0, 5);
+    tcase_add_test(tcase, test_trusted);
     return tcase;
 }

@@ -53,8 +53,38 @@ static const BidirectionalScene SCENES[] = {
 };
 #define SCENE_COUNT (int)(sizeof SCENES / sizeof SCENES[0])
 
-/* Path tracing; the default; each estimator alone plus what it leaves to chains. */
-enum { WAY_PATHS, WAY_ALL, WAY_ESTIMATORS, WAY_COUNT = WAY_ESTIMATORS + ESTIMATOR_COUNT };
+/* Path tracing; the default; each estimator alone plus what it leaves to chains. The default and path tracing, with
+ * what it leaves to chains or with its own rare light, if it draws by photons at all receivers. */
+enum {
+    WAY_PATHS,
+    WAY_ALL,
+    WAY_ESTIMATORS,
+    WAY_EVERYWHERE = WAY_ESTIMATORS + ESTIMATOR_COUNT,
+    WAY_EVERYWHERE_PATHS,
+    WAY_EVERYWHERE_ALONE,
+    WAY_COUNT
+};
+
+static ChainOptions way_options(int way)
+{
+    ChainOptions options = {.chains = 256, .steps = 16, .photons_everywhere = way >= WAY_EVERYWHERE};
+    if (way >= WAY_ESTIMATORS && way < WAY_EVERYWHERE)
+        options.shown = 1 + way - WAY_ESTIMATORS;
+    else if (way == WAY_EVERYWHERE_PATHS)
+        options.shown = 1 + ESTIMATOR_PATHS;
+    else if (way == WAY_EVERYWHERE_ALONE)
+        options.shown = SHOWN_PATHS_ALONE;
+    return options;
+}
+
+/* In make check each scene is rendered in one of the ways of each kind; in make check-long in all. */
+static bool way_due(int way, int scene)
+{
+    if (test_effort() != 1 || way < WAY_ESTIMATORS)
+        return true;
+    return way < WAY_EVERYWHERE ? way - WAY_ESTIMATORS == scene % ESTIMATOR_COUNT
+                                : way - WAY_EVERYWHERE == scene % (WAY_COUNT - WAY_EVERYWHERE);
+}
 
 START_TEST(test_same)
 {
@@ -68,12 +98,11 @@ START_TEST(test_same)
     setup.render.seed = 5000;
     setup.render.photons = PHOTONS;
     for (int way = 0; way < WAY_COUNT; ++way) {
-        if (test_effort() == 1 && way >= WAY_ESTIMATORS && way - WAY_ESTIMATORS != _i % ESTIMATOR_COUNT)
-            continue; /* only in make check-long */
+        if (!way_due(way, _i))
+            continue;
         setup.render.samples = way == WAY_PATHS ? 64 : 128;
         setup.render.integrator = way == WAY_PATHS ? integrator_pt() : integrator_mmlt();
-        setup.render.chains =
-            (ChainOptions){.chains = 256, .steps = 16, .shown = way >= WAY_ESTIMATORS ? 1 + way - WAY_ESTIMATORS : 0};
+        setup.render.chains = way_options(way);
         groups_render(&setup, &got);
         snprintf(line, sizeof line, "%s, way %d", scene->name, way);
         groups_compare(line, &got, &expected, 2, false);
