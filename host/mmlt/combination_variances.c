@@ -260,9 +260,33 @@ static void spreads_settle(Combination *combination, int s)
     combination->ready[s] = known >= 1.0;
 }
 
+/* How many times the variance that the images of a replica's chains state is found between both replicas. */
+static double chains_persistence(const Combination *combination, const Combination *other, int s)
+{
+    const PixelSeries *own = &combination->sums[s], *others = &other->sums[s];
+    if (pixel_series_pictures(own, 0) < 2 || pixel_series_pictures(others, 0) < 2)
+        return 1.0;
+    const double light = combination_mean_light(combination);
+    const PixelWindow all = {(size_t)combination->tiles[0], 0, 0, (size_t)combination->tiles[0],
+                             (size_t)combination->tiles[1]};
+    PixelVariances sums = pixel_series_compare(own, others, all, DARK_PART * light * light);
+    return sums.stated > 0.0 ? fmin(fmax(sums.found / sums.stated, 1.0), PERSISTENCE_MOST) : 1.0;
+}
+
+static void persistence_apply(Combination *combination, const Combination *other)
+{
+    static const int series[] = {ESTIMATOR_CHAINS, SERIES_EXCESS, SERIES_RARE};
+    for (size_t k = 0; k < sizeof series / sizeof series[0]; ++k) {
+        const double factor = chains_persistence(combination, other, series[k]);
+        for (size_t i = 0; i < combination_tile_count(combination); ++i)
+            combination->known[i].spread[series[k]] *= factor;
+    }
+}
+
 void combination_variances_update(Combination *combination, const Combination *other)
 {
     tiles_sum(combination);
+    persistence_apply(combination, other);
     stratification_apply(combination, other);
     for (int s = 0; s < SERIES_COUNT; ++s)
         if (s != ESTIMATOR_BIDIRECTIONAL || pixel_series_pictures(&combination->light[s], 0) > 0)

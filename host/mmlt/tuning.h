@@ -136,6 +136,10 @@
 /* Generations of chains by which their variances count as known where path tracing is trusted with rare light. */
 #define CHAINS_KNOWN 3u
 
+/* How many times the variance that chains' generations state may be found at most between the replicas: chains go on
+ * from one generation to the next, and their errors with them. */
+#define PERSISTENCE_MOST 16.0
+
 /* Path tracing finds too little of the rare light if the chains' in the whole image exceeds its own by this many of the
  * chains' standard errors, and by this part of all light: chains of a few generations state errors that are too small.
  * Its own error does not count: as long as it has found nothing, that is nothing; docs/TUNING.md. */

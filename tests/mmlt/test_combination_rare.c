@@ -1,6 +1,8 @@
 /* Light above the clamping thresholds, which chains show: the excess of pools, and the rare light of path tracing. */
 #include "mmlt/test_combination_estimators.h"
 
+#include "base/sample_statistics.h"
+#include "mmlt/combination_variances.h"
 #include "mmlt/tuning.h"
 
 /* The excess that chains show goes with chains and pool, not with path tracing. */
@@ -147,6 +149,50 @@ START_TEST(test_trusted)
 }
 END_TEST
 
+/* Every generation of a replica has the same errors, those of the other replica are independent: of the variance that
+ * either states, so many times are found between both, up to PERSISTENCE_MOST (_i 1). */
+START_TEST(test_persistence)
+{
+    enum { GENERATIONS = 12 };
+    const double deviation = 0.5, lasting = _i == 0 ? 0.1 : 1.0;
+    const double found = 1.0 + lasting * lasting * 4.0 * GENERATIONS / (deviation * deviation);
+    Estimators replicas[2];
+    double ratios[(SIDE / TILE_SIDE) * (SIDE / TILE_SIDE)];
+    for (uint r = 0; r < 2; ++r) {
+        estimators_init(&replicas[r]);
+        replicas[r].draws = r << 24;
+    }
+    for (uint g = 0; g < 2 * GENERATIONS; ++g) {
+        Estimators *own = &replicas[g % 2];
+        for (int s = 0; s < ESTIMATOR_BIDIRECTIONAL; ++s)
+            estimator_set(own, s, 4.0, 10.0, s == ESTIMATOR_CHAINS ? deviation : 100.0);
+        const uint draws = own->draws;
+        own->draws = (g % 2 << 24) + 0x800000u;
+        for (size_t i = 0; i < PIXELS; ++i) {
+            double error = 4.0 * lasting * noise(own);
+            for (size_t c = 0; c < 3; ++c)
+                own->films[ESTIMATOR_CHAINS].light_sums[3 * i + c] += llrint(error * 0x1p30);
+        }
+        own->draws = draws;
+        Film *films[ESTIMATOR_COUNT] = {&own->films[0], &own->films[1], &own->films[2]};
+        films_combine(&own->combination, &replicas[1 - g % 2].combination, films);
+    }
+    const CombinationTile *tiles = replicas[0].combination.known;
+    const size_t count = combination_tile_count(&replicas[0].combination);
+    combination_variances_update(&replicas[0].combination, &replicas[1].combination);
+    for (size_t i = 0; i < count; ++i)
+        ratios[i] = tiles[i].spread[ESTIMATOR_CHAINS];
+    combination_variances_update(&replicas[0].combination, &replicas[0].combination);
+    for (size_t i = 0; i < count; ++i)
+        ratios[i] /= tiles[i].spread[ESTIMATOR_CHAINS];
+    double factor = sample_quantile(ratios, count, 0.5); /* pools may seem to have more light in a tile */
+    printf("persistence %.2f, expected %.2f, at most %.0f\n", factor, found, PERSISTENCE_MOST);
+    ck_assert_double_eq_tol(factor, fmin(found, PERSISTENCE_MOST), _i == 0 ? 1.0 : 0.01 * PERSISTENCE_MOST);
+    estimators_destroy(&replicas[0]);
+    estimators_destroy(&replicas[1]);
+}
+END_TEST
+
 TCase *combination_rare_tests(void)
 {
     TCase *tcase = tcase_create("rare");
@@ -155,5 +201,6 @@ TCase *combination_rare_tests(void)
     tcase_add_test(tcase, test_fireflies);
     tcase_add_loop_test(tcase, test_rare_missed, 0, 5);
     tcase_add_test(tcase, test_trusted);
+    tcase_add_loop_test(tcase, test_persistence, 0, 2);
     return tcase;
 }
