@@ -4,9 +4,9 @@
 
 #include "render/run.h"
 
-/* Sets *part: the part of a path's light that directions drawn by run->photons bring, on average (docs/CAUSTICS.md, "What
- * it is worth"), by 32768 paths, or one for each pixel, with and without them; 0 if there are none. The same on all
- * backends, and for a crop as for the whole picture. Fails if the backend does or out of memory. */
+/* Sets *part: the part of a path's light that directions drawn by run->photons bring, on average (docs/CAUSTICS.md,
+ * "What it is worth"), by 32768 paths, or one for each pixel, with and without them; 0 if there are none. The same on
+ * all backends, and for a crop as for the whole picture. Fails if the backend does or out of memory. */
 bool photon_map_part(const RenderRun *run, double *part, Error *error);
 
 /* Whether that is enough. True if there are no photons, or some are of lights without extent, which nothing else
