@@ -5,7 +5,7 @@
 #include "mmlt/tuning.h"
 #include "render/layers.h"
 
-#define GROUPS 6
+#define GROUPS 12
 #define SAMPLES 40u
 #define FEW_SAMPLES 8u /* nearly all of the first generations */
 
