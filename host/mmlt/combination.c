@@ -113,7 +113,7 @@ static bool combination_known(const Combination *combination, const double sampl
 
 /* Sets the tile's weights, which add up to 1. Until variances are known, they are proportional to work, and chains have
  * the weight of the pool they start from; rare light is the chains' alone. So a large picture, of which the first pools
- * visit few pixels, shows mostly path tracing at first. */
+ * visit few pixels, shows mostly path tracing at first, and nothing else where that is trusted with rare light. */
 static void weights_set(const Combination *combination, CombinationTile *tile, bool known,
                         const CombinationTerms *terms)
 {
@@ -121,7 +121,8 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
     const double *samples = terms->samples;
     memset(tile->weight, 0, sizeof tile->weight);
     tile->paths_rare = 0.0;
-    const bool alone = shown == SHOWN_PATHS_ALONE || !(samples[ESTIMATOR_CHAINS] > 0.0);
+    const bool trusted = shown == 0 && !known && combination->paths_trusted;
+    const bool alone = shown == SHOWN_PATHS_ALONE || trusted || !(samples[ESTIMATOR_CHAINS] > 0.0);
     if (alone && samples[ESTIMATOR_PATHS] > 0.0) {
         tile->weight[ESTIMATOR_PATHS] = tile->paths_rare = 1.0;
     } else if (shown > 0 && shown <= ESTIMATOR_COUNT && samples[shown - 1] > 0.0) {
@@ -134,8 +135,6 @@ static void weights_set(const Combination *combination, CombinationTile *tile, b
         tile->weight[ESTIMATOR_CHAINS] = others * (1.0 - best.paths) * best.chains;
         tile->weight[ESTIMATOR_POOL] = others * (1.0 - best.paths) * (1.0 - best.chains);
         tile->paths_rare = best.paths_rare;
-    } else if (combination->paths_trusted && samples[ESTIMATOR_PATHS] > 0.0) {
-        tile->weight[ESTIMATOR_PATHS] = tile->paths_rare = 1.0;
     } else {
         double pool = estimator_cost(ESTIMATOR_POOL) * samples[ESTIMATOR_POOL];
         double paths = FIRST_PATHS * estimator_cost(ESTIMATOR_PATHS) * samples[ESTIMATOR_PATHS];
