@@ -112,6 +112,34 @@ START_TEST(test_same)
 }
 END_TEST
 
+/* All light of a small lamp comes through glass, and photons and connections find it: nearly all of what photons draw is
+ * rare light, which chains show, too, so that path tracing with theirs shows it once. */
+START_TEST(test_small_lamp)
+{
+    static const BidirectionalScene scene = {
+        "small lamp in glass",
+        BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.05", "900") SMOOTH_GLASS
+        "AttributeBegin Translate 1 2 -1 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n",
+        SUPPORT_SUM_ONLY, 5, 2};
+    PictureGroups expected, got;
+    GroupSetup setup = {.groups = 32,
+                        .render = {.text = bidirectional_text(&scene),
+                                   .samples = 256,
+                                   .max_depth = scene.depth,
+                                   .threads = 1,
+                                   .integrator = integrator_bdpt()}};
+    groups_render(&setup, &expected);
+    setup.render.seed = 5000;
+    setup.render.photons = PHOTONS;
+    setup.render.integrator = integrator_mmlt();
+    setup.render.chains = way_options(WAY_EVERYWHERE_PATHS);
+    groups_render(&setup, &got);
+    groups_compare(scene.name, &got, &expected, 2, false);
+    groups_destroy(&got);
+    groups_destroy(&expected);
+}
+END_TEST
+
 /* ---- light that nothing else finds ------------------------------------------------------------------------------- */
 
 /* Glass whose index hardly differs from 1 bends no light, so a floor under a pane of it, seen through the pane, is as
@@ -469,6 +497,7 @@ int main(void)
     tcase_add_test(pictures, test_found);
     tcase_add_loop_test(pictures, test_worth, 0, WORTH_COUNT);
     tcase_add_loop_test(pictures, test_same, 0, SCENE_COUNT);
+    tcase_add_test(pictures, test_small_lamp);
     tcase_set_tags(pictures, "pictures");
     suite_add_tcase(suite, pictures);
     TCase *unseen = tcase_create("unseen");
