@@ -82,7 +82,7 @@ typedef struct Combination {
     bool hidden; /* light that path tracing cannot find may exist: of rare light it shows only what it clamps */
     bool rare_missed; /* the same, since path tracing has found significantly less rare light than the chains have, or
                          theirs is not known well enough to tell */
-    bool paths_trusted; /* path tracing draws by photons at all receivers, and misses no rare light, whatever is known */
+    bool paths_trusted; /* path tracing draws by photons at all receivers: it misses no rare light, whatever is known */
     bool opened; /* light comes through openings */
     bool bidirectional_better; /* with some bidirectional path tracing the best division of work has less error */
     bool bidirectional_trial; /* that of the generation under way is a trial, which is not shown */
