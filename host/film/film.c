@@ -197,15 +197,21 @@ static void sums_scale(int64_t *sums, size_t pixel, double factor)
 
 typedef struct FilmNormalizing {
     Film *film;
-    uint32_t count; /* of all pixels afterwards */
+    uint32_t count; /* of the samples of a pixel; 0: nothing is divided */
 } FilmNormalizing;
+
+/* What a pixel's sums of `before` normalized samples and of those under way are to be multiplied by. */
+static double count_factor(const FilmNormalizing *normalizing, size_t pixel, uint32_t before)
+{
+    uint32_t count = normalizing->film->counts[pixel] + before;
+    return normalizing->count > 0 && count > 0 ? ((double)normalizing->count + before) / count : 1.0;
+}
 
 static void pixel_normalize(const FilmNormalizing *normalizing, size_t pixel)
 {
     Film *film = normalizing->film;
-    uint32_t count = film_count(film, pixel);
-    double factor = count > 0 ? (double)normalizing->count / count : 1.0;
-    sums_scale(film->sums, pixel, factor);
+    double factor = count_factor(normalizing, pixel, 0);
+    sums_scale(film->sums, pixel, count_factor(normalizing, pixel, film->every_count));
     sums_scale(film->light_sums, pixel, factor);
     sums_scale(film->rare_sums, pixel, factor);
     for (uint depth = SPLAT_DEPTH_MIN; film->depth_kinds > 0 && depth <= film->depth_last; ++depth)
@@ -222,13 +228,23 @@ static void row_normalize(void *context, size_t row)
         pixel_normalize(normalizing, pixel);
 }
 
+static bool spreads(const Film *film)
+{
+    return film->reconstruction == RECONSTRUCTION_SPLAT;
+}
+
+static uint32_t count_of(const Film *film, uint64_t samples)
+{
+    return (uint32_t)(samples * film_sample_units(film->reconstruction));
+}
+
 void film_normalize(Film *film, uint64_t samples)
 {
-    FilmNormalizing normalizing = {film, (uint32_t)(samples * film_sample_units(film->reconstruction))};
-    if (film->reconstruction != RECONSTRUCTION_SPLAT || samples == 0)
+    FilmNormalizing normalizing = {film, count_of(film, samples)};
+    if (!spreads(film) || samples == 0)
         return;
     film_rows_run(film, row_normalize, &normalizing);
-    film->every_count = normalizing.count;
+    film->every_count += normalizing.count;
 }
 
 static void sums_clear(int64_t *sums, size_t first, size_t end)
@@ -237,39 +253,38 @@ static void sums_clear(int64_t *sums, size_t first, size_t end)
         memset(sums + 3 * first, 0, 3 * (end - first) * sizeof *sums);
 }
 
-typedef struct LightGathering {
-    Film *film;
-    double count; /* film_count of `samples`; 0: nothing is divided */
-} LightGathering;
-
-/* Full sums stay full. */
-static int64_t sum_gathered(int64_t light, int64_t own, double factor)
+/* Adds (factor - 1) times the own samples. Full sums stay full. */
+static int64_t sum_normalized(int64_t light, int64_t own, double factor)
 {
     if (own != film_sum_shown(own))
         return own;
-    return film_sum_rounded((double)film_sum_shown(light) + factor * (double)own);
+    return film_sum_rounded((double)film_sum_shown(light) + (factor - 1.0) * (double)own);
 }
 
-static void row_gather(void *context, size_t row)
+static void row_normalize_bidirectional(void *context, size_t row)
 {
-    const LightGathering *gathering = context;
-    Film *film = gathering->film;
-    size_t width = (size_t)(film->crop[2] - film->crop[0]);
-    for (size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
-        uint32_t own = film_count(film, pixel);
-        double factor = gathering->count > 0.0 && own > 0 ? gathering->count / own : 1.0;
+    const FilmNormalizing *normalizing = context;
+    Film *film = normalizing->film;
+    size_t width = (size_t)(film->crop[2] - film->crop[0]), first = row * width, end = first + width;
+    const bool divides = normalizing->count > 0;
+    for (size_t pixel = first; pixel < end && divides && spreads(film); ++pixel) {
+        double factor = count_factor(normalizing, pixel, 0);
+        sums_scale(film->sums, pixel, factor);
         for (size_t c = 3 * pixel; c < 3 * pixel + 3; ++c)
-            film->light_sums[c] = sum_gathered(film->light_sums[c], film->sums[c], factor);
+            film->light_sums[c] = sum_normalized(film->light_sums[c], film->rare_sums[c], factor);
     }
-    sums_clear(film->sums, row * width, (row + 1) * width);
-    memset(film->counts + row * width, 0, width * sizeof *film->counts);
+    sums_clear(film->rare_sums, first, end);
+    if (!divides)
+        sums_clear(film->sums, first, end);
+    if (!divides || spreads(film))
+        memset(film->counts + first, 0, width * sizeof *film->counts);
 }
 
-void film_light_gather(Film *film, uint64_t samples)
+void film_normalize_bidirectional(Film *film, uint64_t samples)
 {
-    LightGathering gathering = {film, (double)samples * film_sample_units(film->reconstruction)};
-    film_rows_run(film, row_gather, &gathering);
-    film->every_count = 0;
+    FilmNormalizing normalizing = {film, count_of(film, samples)};
+    film_rows_run(film, row_normalize_bidirectional, &normalizing);
+    film->every_count = spreads(film) ? normalizing.count : 0;
 }
 
 typedef struct LightAdding {
@@ -304,6 +319,11 @@ void film_pixels_clear(Film *film, size_t first, size_t end)
     for (size_t i = first; i < end; ++i)
         if (film->counts[i] > 0)
             film->counts[i] = 0;
+}
+
+void film_pixels_clear_light(Film *film, size_t first, size_t end)
+{
+    sums_clear(film->light_sums, first, end);
 }
 
 static void row_clear(void *context, size_t row)

@@ -116,22 +116,23 @@ bool film_merge(Film *film, const Film *from, Error *error);
 void film_swap_own(Film *a, Film *b);
 
 /* For a film in which every pixel has `samples` samples, of which splats from the light are a part: divides each
- * pixel's sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. Nothing changes
- * unless the film spreads splats. */
+ * pixel's sums, of all layers, by the number of samples that lie near it, and multiplies by `samples`. `sums` may have
+ * had more samples before, which have been normalized and stay. Nothing changes unless the film spreads splats. */
 void film_normalize(Film *film, uint64_t samples);
 
-/* Moves the pixels' own samples, `sums`, to light_sums, in a film without sums per depth. samples: of every pixel, if
- * it has so many: what is moved is divided by the number that lie near the pixel, and multiplied by `samples`. 0: some
- * pixels have none, nothing is divided. */
-void film_light_gather(Film *film, uint64_t samples);
+/* The same for a film of bidirectional samples, without sums per depth: of light_sums only for the pixels' own samples,
+ * which rare_sums hold once more, and not for splats from the light. rare_sums are zero then. samples 0: some pixels
+ * have none; nothing is divided, and `sums` are zero, too, and without samples. */
+void film_normalize_bidirectional(Film *film, uint64_t samples);
 
 /* Adds `change`, 3 values a pixel in units of the sums, to light_sums, and `samples` to light_samples. */
 void film_light_add(Film *film, const float *change, int64_t samples);
 
-/* Resets all sums and counters to zero; size and quantum stay. The next two: only the sums and counts of pixels [first,
- * end), and only what the film counts as a whole. */
+/* Resets all sums and counters to zero; size and quantum stay. The next three: only the sums and counts of pixels
+ * [first, end), only their light_sums, and only what the film counts as a whole. */
 void film_clear(Film *film);
 void film_pixels_clear(Film *film, size_t first, size_t end);
+void film_pixels_clear_light(Film *film, size_t first, size_t end);
 void film_counters_clear(Film *film);
 
 /* Saves sums and counts, or restores them into a film with the same size, crop, quantum, reconstruction and kinds of

@@ -101,7 +101,7 @@ static bool trial_run(BidirectionalEstimator *estimator, const Generation *gener
     if (!estimator_pass(own, run, &frame, false, &delivered, error))
         return false;
     *whole = delivered == estimator->trial;
-    film_light_gather(own->film, 0);
+    film_normalize_bidirectional(own->film, 0);
     run->chains.bidirectional_seconds += timing_now() - begin;
     return true;
 }

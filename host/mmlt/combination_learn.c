@@ -93,47 +93,51 @@ static float luminance_of(const int64_t *sums, const int64_t *less, double scale
     return rgb_luminance(vec3(rgb[0], rgb[1], rgb[2]));
 }
 
-static void image_learn(FilmLearning *learning, PixelSeries *patches, PixelSeries *tiles, const int64_t *sums,
-                        const int64_t *less)
+static void image_learn(FilmLearning *learning, PixelSeries *patches, PixelSeries *tiles, double samples,
+                        const int64_t *sums, const int64_t *less)
 {
+    if (!(samples > 0.0))
+        return;
     int image = learning->count++;
+    learning->images[image].samples = samples;
     learning->images[image].sums = sums;
     learning->images[image].less = less;
     learning->images[image].patches = patches;
     learning->images[image].tiles = tiles;
-    pixel_series_begin(patches, (double)learning->samples);
+    pixel_series_begin(patches, samples);
     if (tiles)
-        pixel_series_begin(tiles, (double)learning->samples);
+        pixel_series_begin(tiles, samples);
 }
 
-static void series_learn(FilmLearning *learning, int s, const int64_t *sums, const int64_t *less)
+static void series_learn(FilmLearning *learning, int s, double samples, const int64_t *sums, const int64_t *less)
 {
     Combination *combination = learning->combination;
-    image_learn(learning, &combination->light[s], &combination->sums[s], sums, less);
+    image_learn(learning, &combination->light[s], &combination->sums[s], samples, sums, less);
 }
 
 void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
-                                uint64_t samples)
+                                double samples, double direct)
 {
-    *learning = (FilmLearning){.combination = combination, .film = film, .samples = samples};
-    series_learn(learning, (int)kind, film->light_sums, kind == ESTIMATOR_PATHS ? film->rare_sums : NULL);
+    *learning = (FilmLearning){.combination = combination, .film = film};
+    series_learn(learning, (int)kind, samples, film->light_sums, kind == ESTIMATOR_PATHS ? film->rare_sums : NULL);
     if (kind == ESTIMATOR_CHAINS) {
-        series_learn(learning, SERIES_EXCESS, film->sums, NULL);
-        series_learn(learning, SERIES_RARE, film->rare_sums, NULL);
+        series_learn(learning, SERIES_EXCESS, samples, film->sums, NULL);
+        series_learn(learning, SERIES_RARE, samples, film->rare_sums, NULL);
     } else if (kind == ESTIMATOR_PATHS) {
-        series_learn(learning, SERIES_PATHS_RARE, film->rare_sums, NULL);
-        image_learn(learning, &combination->direct, NULL, film->sums, NULL);
+        series_learn(learning, SERIES_PATHS_RARE, samples, film->rare_sums, NULL);
+        image_learn(learning, &combination->direct, NULL, direct, film->sums, NULL);
     }
 }
 
 /* The luminances of an image in a row of tiles, summed over patches and tiles. */
-static void row_sum(const FilmLearning *learning, const int64_t *sums, const int64_t *less, size_t row)
+static void row_sum(const FilmLearning *learning, int image, size_t row)
 {
+    const int64_t *sums = learning->images[image].sums, *less = learning->images[image].less;
     const Combination *combination = learning->combination;
     const Film *film = learning->film;
     RowRange pixels = combination_row_pixels(combination, row), patches = combination_row_patches(combination, row),
              tiles = combination_row_tiles(combination, row);
-    double unit = ldexp((double)film_pixels(film) / (double)learning->samples, film->quantum_exponent);
+    double unit = ldexp((double)film_pixels(film) / learning->images[image].samples, film->quantum_exponent);
     memset(combination->patch_sums + patches.first, 0, (patches.end - patches.first) * sizeof(float));
     memset(combination->tile_sums + tiles.first, 0, (tiles.end - tiles.first) * sizeof(float));
     for (size_t i = pixels.first, end; i < pixels.end; i = end) {
@@ -151,7 +155,7 @@ void combination_row_learn(const FilmLearning *learning, size_t row)
     const Combination *combination = learning->combination;
     RowRange patches = combination_row_patches(combination, row), tiles = combination_row_tiles(combination, row);
     for (int i = 0; i < learning->count; ++i) {
-        row_sum(learning, learning->images[i].sums, learning->images[i].less, row);
+        row_sum(learning, i, row);
         pixel_series_add_part(learning->images[i].patches, combination->patch_sums, patches.first, patches.end);
         if (learning->images[i].tiles)
             pixel_series_add_part(learning->images[i].tiles, combination->tile_sums, tiles.first, tiles.end);

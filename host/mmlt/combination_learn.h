@@ -64,11 +64,12 @@ typedef struct Combination {
     float *patch_sums, *tile_sums; /* scratch: an image, summed over patches and over tiles */
     bool shares; /* `known` and scratch are those of another combination */
     /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of
-     * its indirect and direct light over patches when it had `earlier_samples` per pixel (0: not yet), and the exponent
-     * a of the variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c). */
+     * its indirect and direct light over patches when they had `earlier_samples` per pixel (0: not yet), and the
+     * exponent a of the variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c).
+     * Direct light has the samples of bidirectional path tracing, too. */
     bool one_sequence;
     float *earlier[2];
-    double earlier_samples, exponents[2];
+    double earlier_samples[2], exponents[2];
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
     /* Variance of the chains' light in a tile over the sum of those in its patches: 1 for errors that are independent
@@ -122,18 +123,18 @@ double combination_mean_light(const Combination *combination);
 typedef struct FilmLearning {
     Combination *combination;
     const Film *film;
-    uint64_t samples; /* of the estimator */
     struct {
+        double samples;
         const int64_t *sums, *less; /* less: what is not part of the image; NULL: all is */
         PixelSeries *patches, *tiles; /* tiles: may be NULL */
     } images[ESTIMATOR_IMAGES];
     int count;
 } FilmLearning;
 
-/* Begins with the images that a film of `samples` > 0 samples of an estimator holds: layers as in
- * mmlt/combined_image.h. */
+/* Begins with the images that a film of `samples` of an estimator holds: layers as in mmlt/combined_image.h. direct: the
+ * number of samples of direct light, if the estimator is path tracing, of which there may be none then. */
 void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
-                                uint64_t samples);
+                                double samples, double direct);
 
 /* Adds a row of tiles of the images to the series. */
 void combination_row_learn(const FilmLearning *learning, size_t row);

@@ -9,7 +9,7 @@ typedef struct Comparison {
     Combination *combination;
     const Combination *other;
     double indirect, direct; /* mean luminances of a patch */
-    double shrink; /* 1 / samples of all earlier paths - 1 / samples of all paths */
+    double shrink[2]; /* of indirect and direct light: 1 / earlier samples - 1 / all samples */
 } Comparison;
 
 /* ---- two sequences ----------------------------------------------------------------------------------------------- */
@@ -50,10 +50,11 @@ static void row_earlier(void *context, size_t row)
     Combination *a = comparison->combination;
     const Combination *b = comparison->other;
     RowRange patches = combination_row_patches(a, row);
-    a->rows[row].indirect = mean_compare(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], a->earlier[0], patches,
-                                         DARK_PART * comparison->indirect * comparison->indirect, comparison->shrink);
+    a->rows[row].indirect =
+        mean_compare(&a->light[ESTIMATOR_PATHS], &b->light[ESTIMATOR_PATHS], a->earlier[0], patches,
+                     DARK_PART * comparison->indirect * comparison->indirect, comparison->shrink[0]);
     a->rows[row].direct = mean_compare(&a->direct, &b->direct, a->earlier[1], patches,
-                                       DARK_PART * comparison->direct * comparison->direct, comparison->shrink);
+                                       DARK_PART * comparison->direct * comparison->direct, comparison->shrink[1]);
 }
 
 /* Largest exponent of the variance of n samples, n^-exponent, that is told from others. */
@@ -110,27 +111,34 @@ static StratifiedParts rows_compare(Comparison *comparison, ParallelPart *row_co
 /* Fewest samples per pixel of which a mean is kept to be compared with a later one. */
 #define EARLIER_LEAST 4.0
 
-static double samples_of(const Combination *combination, const Combination *other)
+/* Samples per pixel of a series of both replicas. */
+static double samples_of(const Combination *combination, const PixelSeries *a, const PixelSeries *b)
 {
-    return pixel_series_weight(&combination->direct, 0) + pixel_series_weight(&other->direct, 0);
+    double pixels = (double)combination->size[0] * (double)combination->size[1];
+    return (pixel_series_weight(a, 0) + pixel_series_weight(b, 0)) / pixels;
 }
 
 static StratifiedParts sequence_left(Combination *combination, const Combination *other)
 {
-    double pixels = (double)combination->size[0] * (double)combination->size[1],
-           many = samples_of(combination, other) / pixels, few = combination->earlier_samples;
+    const double many[2] = {
+        samples_of(combination, &combination->light[ESTIMATOR_PATHS], &other->light[ESTIMATOR_PATHS]),
+        samples_of(combination, &combination->direct, &other->direct)};
+    double *few = combination->earlier_samples, pixels = (double)combination->size[0] * (double)combination->size[1];
     Comparison comparison = {.combination = combination, .other = other};
-    if (many >= EARLIER_LEAST && many >= 2.0 * few) {
-        comparison.shrink = few > 0.0 ? (1.0 / few - 1.0 / many) / pixels : 0.0;
+    if (many[0] >= EARLIER_LEAST && many[0] >= 2.0 * few[0]) {
+        bool earlier = few[0] > 0.0;
+        for (int i = 0; i < 2; ++i)
+            comparison.shrink[i] = earlier ? (1.0 / few[i] - 1.0 / many[i]) / pixels : 0.0;
         StratifiedParts parts = rows_compare(&comparison, row_earlier);
-        if (few > 0.0) {
-            combination->exponents[0] = exponent_of(parts.indirect, few, many);
-            combination->exponents[1] = exponent_of(parts.direct, few, many);
+        if (earlier) {
+            combination->exponents[0] = exponent_of(parts.indirect, few[0], many[0]);
+            combination->exponents[1] = exponent_of(parts.direct, few[1], many[1]);
         }
-        combination->earlier_samples = many;
+        few[0] = many[0];
+        few[1] = many[1];
     }
-    return (StratifiedParts){pow(fmax(many, 1.0), 1.0 - combination->exponents[0]),
-                             pow(fmax(many, 1.0), 1.0 - combination->exponents[1])};
+    return (StratifiedParts){pow(fmax(many[0], 1.0), 1.0 - combination->exponents[0]),
+                             pow(fmax(many[1], 1.0), 1.0 - combination->exponents[1])};
 }
 
 StratifiedParts combination_stratified(Combination *combination, const Combination *other)

@@ -141,7 +141,7 @@ double combination_error(const Combination *combination, const double samples[ES
     const CombinationTerms terms = combination_terms(combination, samples, factor, every);
     for (size_t i = 0; i < combination_tile_count(combination); i += every) {
         const CombinationTile tile = tile_varied(&combination->known[i], factor);
-        double direct = with_direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0;
+        double direct = with_direct ? tile.direct / (samples[ESTIMATOR_PATHS] + samples[ESTIMATOR_BIDIRECTIONAL]) : 0.0;
         sum += (tile_combination(&tile, &terms).variance + direct) / tile_relative_square(&tile, light);
     }
     return sum;

@@ -172,19 +172,30 @@ static void row_add(void *context, size_t row)
     RowRange pixels = combination_row_pixels(learner, row);
     learner->rows[row].full = film_full_pixels_of(adding->film, pixels.first, pixels.end);
     combination_row_learn(&adding->learning, row);
-    sums_add(adding, film_sums(adding), pixels);
+    if (adding->image->samples[adding->kind] > 0.0)
+        sums_add(adding, film_sums(adding), pixels);
     if (adding->kind == ESTIMATOR_PATHS && adding->image->change)
         change_add_paths(adding, pixels);
     for (uint segments = SPLAT_DEPTH_MIN; adding->image->depths && segments <= adding->film->depth_last; ++segments)
         sums_add(adding, film_sums_of(adding, segments), pixels);
-    if (adding->take)
+    if (adding->take && adding->kind == ESTIMATOR_BIDIRECTIONAL)
+        film_pixels_clear_light(adding->film, pixels.first, pixels.end);
+    else if (adding->take)
         film_pixels_clear(adding->film, pixels.first, pixels.end);
+}
+
+/* Samples of direct light: those of path tracing, and those of bidirectional path tracing that are shown. */
+static double direct_samples(const CombinedImage *image)
+{
+    return image->samples[ESTIMATOR_PATHS] +
+           (image->teacher->bidirectional_trial ? 0.0 : image->samples[ESTIMATOR_BIDIRECTIONAL]);
 }
 
 static void film_add(CombinedImage *image, EstimatorKind kind, Film *film, bool take)
 {
     ImageAdding adding = {.image = image, .film = film, .take = take, .kind = kind};
-    combination_learning_begin(&adding.learning, image->learner, kind, film, (uint64_t)image->samples[kind]);
+    combination_learning_begin(&adding.learning, image->learner, kind, film, image->samples[kind],
+                               direct_samples(image));
     combination_rows_run(image->learner, row_add, &adding);
     /* A sum that is full in an estimator need not be so in the combination. */
     for (int row = 0; row < image->learner->tiles[1]; ++row)
@@ -196,15 +207,17 @@ static void film_add(CombinedImage *image, EstimatorKind kind, Film *film, bool 
 
 void combined_image_add(CombinedImage *image, EstimatorKind kind, Film *film)
 {
-    if (image->samples[kind] > 0.0)
+    if (image->samples[kind] > 0.0 || (kind == ESTIMATOR_PATHS && direct_samples(image) > 0.0))
         film_add(image, kind, film, false);
 }
 
 void combined_image_take(CombinedImage *image, EstimatorKind kind, Film *film)
 {
+    const uint32_t every = kind == ESTIMATOR_BIDIRECTIONAL ? film->every_count : 0;
     if (image->samples[kind] > 0.0)
         film_add(image, kind, film, true);
     film_counters_clear(film);
+    film->every_count = every;
 }
 
 typedef struct ImageFinishing {

@@ -3,8 +3,8 @@
  * film and this.
  *
  * Layers of the film: light_sums hold paths that all estimators make, up to the estimator's clamping threshold. Of path
- * tracing, `sums` hold direct light, and rare_sums what of the light is rare. Of chains, `sums` hold the excess and
- * rare_sums the rare light. Bidirectional path tracing has all of its light in light_sums. */
+ * tracing and of bidirectional path tracing `sums` hold direct light, and stay in the film from one to the other; of the
+ * former rare_sums hold what of the light is rare. Of chains, `sums` hold the excess and rare_sums the rare light. */
 #ifndef TWINLIGHT_MMLT_COMBINED_IMAGE_H
 #define TWINLIGHT_MMLT_COMBINED_IMAGE_H
 
@@ -46,7 +46,7 @@ void combined_image_begin(CombinedImage *image, Combination *learner, Combinatio
                           const double samples[ESTIMATOR_COUNT]);
 
 /* Adds what an estimator has left in the film, and learns from it, unless it has no samples. take: empties the film,
- * too. */
+ * too, but for direct light of bidirectional path tracing. Path tracing comes after that, if not first. */
 void combined_image_add(CombinedImage *image, EstimatorKind kind, Film *film);
 void combined_image_take(CombinedImage *image, EstimatorKind kind, Film *film);
 

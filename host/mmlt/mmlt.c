@@ -170,13 +170,14 @@ static void generation_samples(Mmlt *mmlt, uint count)
     double *samples = mmlt->samples;
     if (mmlt->generation.index == 1 && mmlt->paths.fresh > 0)
         bidirectional_begin(mmlt);
+    samples[ESTIMATOR_BIDIRECTIONAL] =
+        bidirectional_estimator_plan(&mmlt->bidirectional, &mmlt->generation, &mmlt->plan, chains ? count : 0, known);
+    mmlt->paths.beside = mmlt->bidirectional.whole.fresh;
     paths_estimator_plan(&mmlt->paths, &mmlt->generation, plan_paths_samples(&mmlt->plan, count));
     mmlt->chains.own.samples = (uint64_t)count * mmlt->options.steps; /* also if no path is long enough for any */
     samples[ESTIMATOR_CHAINS] = chains ? (double)mmlt->chains.own.samples : 0.0;
     samples[ESTIMATOR_POOL] = chains && pool_due(mmlt) ? (double)plan_pool_samples(&mmlt->plan, count) : 0.0;
     samples[ESTIMATOR_PATHS] = (double)mmlt->paths.own.samples;
-    samples[ESTIMATOR_BIDIRECTIONAL] =
-        bidirectional_estimator_plan(&mmlt->bidirectional, &mmlt->generation, &mmlt->plan, chains ? count : 0, known);
     for (int replica = 0; replica < REPLICAS; ++replica)
         mmlt->combinations[replica].bidirectional_trial = mmlt->bidirectional.trial > 0;
 }

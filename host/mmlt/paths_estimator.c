@@ -12,10 +12,10 @@
 #include <math.h>
 
 /* Makes the estimator's list for `frame`, which is complete then. */
-static bool list_make(Estimator *estimator, FrameParams *frame, const Integrator *integrator, const RenderRun *run,
-                      const Guide *guide, Error *error)
+static bool list_make(Estimator *estimator, FrameParams *frame, const Integrator *integrator, uint strategies,
+                      const RenderRun *run, const Guide *guide, Error *error)
 {
-    frame->path.strategies = integrator->strategies;
+    frame->path.strategies = strategies;
     estimator_film_params(estimator, &frame->film);
     bool made = integrator->list(frame, &estimator->list, error);
     estimator->list.guide = guide;
@@ -41,13 +41,15 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                               .forced_each = 1,
                               .sequences = sequences_of(run)};
     paths->frame.partition.split_direct = !direct_only;
+    paths->shows_more = pt_shows_more(&paths->frame);
     paths->frame.photons.everywhere = paths->complete_frame.photons.everywhere =
         !direct_only && (run->options->chains.photons_everywhere || run->photons_part > PHOTONS_EVERYWHERE_PART) &&
         film->depth_kinds == 0;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
-    return list_make(&paths->own, &paths->frame, integrator_pt(), run, guide, error) &&
-           (!completes || list_make(&paths->complete, &paths->complete_frame, integrator_pt(), run, guide, error));
+    return list_make(&paths->own, &paths->frame, integrator_pt(), STRATEGIES_PT, run, guide, error) &&
+           (!completes ||
+            list_make(&paths->complete, &paths->complete_frame, integrator_pt(), STRATEGIES_PT, run, guide, error));
 }
 
 bool paths_estimator_init_bidirectional(PathsEstimator *paths, const RenderRun *run, Film *film, const Guide *guide,
@@ -58,9 +60,10 @@ bool paths_estimator_init_bidirectional(PathsEstimator *paths, const RenderRun *
                               .bidirectional = true,
                               .combined = true,
                               .sequences = sequences_of(run)};
-    paths->frame.path.min_depth = CHAIN_DEPTH_MIN;
+    paths->frame.partition.split_direct = 1;
     paths->frame.scene.guide_count = 0;
-    return list_make(&paths->own, &paths->frame, integrator_bdpt(), run, guide, error);
+    return list_make(&paths->own, &paths->frame, integrator_bdpt(), STRATEGIES_BDPT & ~STRATEGY_CAMERA_DIRECT, run,
+                     guide, error);
 }
 
 void paths_estimator_destroy(PathsEstimator *paths)
@@ -97,6 +100,8 @@ uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *gene
         uint64_t forced = (uint64_t)(generation->index - paths->forced_first + 1) * paths->forced_each;
         target = target < forced ? forced : target;
     }
+    if (paths->shows_more && paths->beside > 0 && target <= paths->done)
+        target = paths->done + 1;
     target = target < most ? target : most;
     return target > paths->done ? target - paths->done : 0;
 }
@@ -155,6 +160,7 @@ static bool passes_run(PathsEstimator *paths, const Generation *generation, bool
     uint64_t items = paths->own.samples;
     uint first = paths_estimator_number(paths, generation);
     frame->partition.clamp_threshold = generation->clamp_threshold;
+    frame->partition.own_more = paths->fresh > 0 ? (float)paths->beside / (float)paths->fresh : 0.0f;
     frame->path.sobol = run->options->independent ? 0 : 1 + sequence_first(paths, generation);
     paths->delivered = 0;
     for (uint64_t next = 0; next < items && *whole; next += frame->pass.item_count) {
@@ -182,7 +188,7 @@ bool paths_estimator_run(PathsEstimator *paths, const Generation *generation, bo
     if (!passes_run(paths, generation, complete, whole, error))
         return false;
     if (*whole && paths->bidirectional)
-        film_light_gather(film, paths->fresh);
+        film_normalize_bidirectional(film, paths->fresh);
     else if (*whole && paths->combined)
         film_normalize(film, paths->fresh);
     if (*whole && complete)

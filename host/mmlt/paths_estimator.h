@@ -1,5 +1,6 @@
-/* Whole samples of every pixel beside the chains. Path tracing: easy light of all lengths, and all direct light. And
- * bidirectional path tracing: all light of the paths that chains make (mmlt/bidirectional_estimator.h). */
+/* Whole samples of every pixel beside the chains. Path tracing: easy light of all lengths, and direct light. And
+ * bidirectional path tracing: direct light, and all light of the paths that chains make
+ * (mmlt/bidirectional_estimator.h). */
 #ifndef TWINLIGHT_MMLT_PATHS_ESTIMATOR_H
 #define TWINLIGHT_MMLT_PATHS_ESTIMATOR_H
 
@@ -12,10 +13,15 @@ typedef struct PathsEstimator {
     Estimator complete; /* all light together, if `completes`: it takes less time */
     FrameParams complete_frame;
     bool completes;
-    bool bidirectional; /* by bidirectional path tracing: all of its light is in the film's light_sums, at last */
+    bool
+        bidirectional; /* by bidirectional path tracing: all of its light is in the film's light_sums, but direct light */
     bool combined; /* with the other estimators, which learn from it; otherwise it shows what these do not make */
     /* Generations forced_first ... forced_end - 1 have so many samples of every pixel each, whatever is wanted. */
     uint forced_first, forced_end, forced_each;
+    bool shows_more; /* pt_shows_more */
+    /* Samples of every pixel by bidirectional path tracing in the generation under way, whose direct light is in the
+     * film. */
+    uint64_t beside;
     uint64_t delivered; /* single-pixel samples in the generation under way */
     uint64_t done; /* samples of every pixel so far ... */
     uint sequences; /* stratified ones: 1, or one for even and one for odd generations, so that the layers' halves are
@@ -42,7 +48,8 @@ void paths_estimator_destroy(PathsEstimator *paths);
 void paths_estimator_archive(Archive *archive, PathsEstimator *paths);
 
 /* The samples of every pixel in the generation, if `more` of them are wanted than before it: whole ones, until there
- * have been about as many as wanted. After n of the generations that are forced there are at least n times forced_each. */
+ * have been about as many as wanted. After n of the generations that are forced there are at least n times forced_each;
+ * and one if others are in the film beside which it shows more. */
 uint64_t paths_estimator_due(const PathsEstimator *paths, const Generation *generation, double more);
 
 /* Sets `fresh` and own.samples to that. */

@@ -174,7 +174,7 @@
  * path tracing; 1 if its work is divided as is best without. */
 #define FIRST_WORTH 0.25
 #define WORTH_MOST 2.0
-#define WORTH_BIDIRECTIONAL_MOST 16.0
+#define WORTH_BIDIRECTIONAL_MOST 4.0
 
 /* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this
  * many times the error of the best division of work, which takes longer; docs/TUNING.md. */

@@ -35,6 +35,10 @@ typedef struct Integrator {
 INTEGRATOR_LIST(INTEGRATOR_DECLARE)
 #undef INTEGRATOR_DECLARE
 
+/* Whether path tracing beside other estimators of mmlt shows light that is not direct and that these do not
+ * (path/path_gather.h). */
+bool pt_shows_more(const FrameParams *frame);
+
 /* Finds an integrator by name; NULL with an error that lists all. */
 const Integrator *integrator_find(const char *name, Error *error);
 

@@ -63,8 +63,8 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     const BidirectionalSteps steps = {.max_depth = max_depth,
                                       .split = frame->film.split_depths != 0,
                                       .media = (frame_features(frame) & FEATURE_MEDIUM) != 0};
-    /* Two walks, their starts, the last splat, and up to six steps per connection. */
-    size_t capacity = 9 * (size_t)max_depth + 9 + 6 * (size_t)max_depth * (max_depth + 1) / 2;
+    /* Two walks, their starts, the last splats, and up to six steps per connection. */
+    size_t capacity = 9 * (size_t)max_depth + 11 + 6 * (size_t)max_depth * (max_depth + 1) / 2;
     Recorder recorder;
     if (!recorder_init(&recorder, capacity, error))
         return false;
@@ -79,6 +79,10 @@ bool bdpt_list(FrameParams *frame, StepList *list, Error *error)
     record_connections(&recorder, &steps);
     if (frame->pool.enabled)
         recorder_kernel(&recorder, KERNEL_pool_end, false);
+    if (frame->partition.split_direct) {
+        recorder_kernel(&recorder, KERNEL_bd_splat_direct, false);
+        recorder_step(&recorder, STEP_SPLAT);
+    }
     recorder_kernel(&recorder, KERNEL_bd_splat, false);
     *list = recorder_list(&recorder, frame, BD_HEADER_WORDS, BD_FIELDS, BD_FIELD_COUNT);
     list->words_per_item[BUFFER_VERTICES] = 2 * max_depth * VERTEX_WORDS;

@@ -146,6 +146,11 @@ static const StateField PATH_FIELDS[] = {
 #define PATH_FIELDS_OF_MEDIA 2 /* the last ones */
 #undef PATH_FIELD
 
+bool pt_shows_more(const FrameParams *frame)
+{
+    return frame->photons.count > 0 || (frame_features(frame) & FEATURE_MEDIUM_EMISSION) != 0;
+}
+
 static bool pt_list(FrameParams *frame, StepList *list, Error *error)
 {
     Recorder recorder;
@@ -154,8 +159,7 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
                              .split_depths = frame->film.split_depths != 0,
                              .caustics = frame->photons.count > 0,
                              .caustic_shadows = caustic_has_shadows(frame_features(frame)),
-                             .own_last =
-                                 frame->photons.count > 0 || (frame_features(frame) & FEATURE_MEDIUM_EMISSION) != 0};
+                             .own_last = pt_shows_more(frame)};
     size_t per_segment = 11 + (steps.caustics ? caustics_count(&steps) : 0);
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;

@@ -118,27 +118,50 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     }
     if (visible)
         connection_depth_set(frame, paths, item, s + t - 1u);
-    connection_add(paths, splats, diagnostics, stride, item, t == 1u, visible);
+    connection_add(frame, paths, splats, diagnostics, item, t == 1u, s + t - 1u, visible);
     connection_advance(paths, stride, item, frame->path.max_depth);
 }
 
-/* From: what was gathered for the pixel. To: its splat. With frame->film.split_depths it also runs in the course of a
- * path, and then clears what was gathered. */
+/* Splats what was gathered in `field` to the path's pixel. */
+SHARED_FUNCTION void gathered_splat(__global const FrameParams *frame, __global const uint *restrict paths,
+                                    __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
+                                    uint field, uint flags)
+{
+    uint stride = frame->pass.stride;
+    splat_store(
+        splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item),
+        state_load(paths, stride, BD_OFFSET, item),
+        vec3_scale(state_load_vec3(paths, stride, field, item), state_load_float(paths, stride, BD_WEIGHT, item)));
+}
+
+/* Only with frame->partition.split_direct. From: direct light, gathered for the pixel. To: its splat, a sample of the
+ * pixel. */
+__kernel void bd_splat_direct(__global const FrameParams *restrict frame, __global const uint *restrict paths,
+                              __global uint *restrict splats, __global uint *restrict diagnostics)
+{
+    uint item = (uint)get_global_id(0);
+    if (item < frame->pass.item_count)
+        gathered_splat(frame, paths, splats, diagnostics, item, BD_DIRECT, SPLAT_SAMPLE);
+}
+
+/* From: what was gathered for the pixel. To: its splat. With frame->partition.split_direct it goes where splats from the
+ * light go, and also apart from these, since the film divides it by the number of samples near the pixel
+ * (film_normalize_bidirectional). With frame->film.split_depths it also runs in the course of a path, and then clears
+ * what was gathered. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {
     uint item = (uint)get_global_id(0), stride = frame->pass.stride;
     if (item >= frame->pass.item_count)
         return;
-    Vec3 radiance =
-        vec3_scale(state_load_vec3(paths, stride, BD_RADIANCE, item), state_load_float(paths, stride, BD_WEIGHT, item));
-    uint flags = frame->pool.enabled != 0u ? SPLAT_LIGHT : SPLAT_SAMPLE;
-    if (frame->film.split_depths != 0u) {
+    uint flags = frame->pool.enabled != 0u             ? SPLAT_LIGHT
+                 : frame->partition.split_direct != 0u ? SPLAT_LIGHT | SPLAT_RARE
+                                                       : SPLAT_SAMPLE;
+    if (frame->film.split_depths != 0u)
         flags |= splat_depth(frame->film.split_depths, state_load(paths, stride, BD_GATHERED, item));
+    gathered_splat(frame, paths, splats, diagnostics, item, BD_RADIANCE, flags);
+    if (frame->film.split_depths != 0u)
         state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
-    }
-    splat_store(splats, diagnostics, stride, item, flags | state_load(paths, stride, BD_PIXEL, item),
-                state_load(paths, stride, BD_OFFSET, item), radiance);
 }
 
 #endif

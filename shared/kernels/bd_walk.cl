@@ -90,7 +90,7 @@ SHARED_FUNCTION void bd_add_met(const SceneView *scene, __global uint *restrict 
         contribution = bd_offer_met(scene, paths, item, depth, contribution);
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, item, depth);
-    bd_add_radiance(paths, stride, item, contribution);
+    bd_add_radiance(frame, paths, item, depth, contribution);
 }
 
 /* From: closest hits. To: emission that the camera walk has hit, gathered; the vertex with its densities. Walks that

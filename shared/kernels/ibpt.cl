@@ -41,7 +41,7 @@ SHARED_FUNCTION void ib_add_met(__global const FrameParams *frame, __global uint
     if (vec3_is_zero(radiance) || !strategy_wanted(frame, 0u, depth + 1u))
         return;
     float weight = frame->path.unweighted != 0u ? 1.0f : ib_weight_met(frame, paths, item, depth, delta, ends);
-    bd_add_radiance(paths, frame->pass.stride, item, vec3_scale(vec3_mul(beta, radiance), weight));
+    bd_add_radiance(frame, paths, item, depth, vec3_scale(vec3_mul(beta, radiance), weight));
 }
 
 SHARED_FUNCTION void ib_add_environment(const SceneView *scene, __global uint *restrict paths, uint item, uint depth,
@@ -139,8 +139,8 @@ __kernel void ib_add_connections(__global const FrameParams *restrict frame, __g
     if (item >= frame->pass.item_count)
         return;
     bool visible = shadow_take(shadows, stride, item);
-    connection_add(paths, splats, diagnostics, stride, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
-                   visible);
+    connection_add(frame, paths, splats, diagnostics, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
+                   state_load(paths, stride, BD_DEPTH, item) + 1u, visible);
 }
 
 /* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette; no

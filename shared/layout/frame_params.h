@@ -60,8 +60,7 @@ typedef struct FilmParams {
 /* Paths of any integrator, and MIS. */
 typedef struct PathParams {
     uint max_depth; /* largest depth of a path, >= 1 */
-    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths, and if it is more than 1 what media
-                       emit, are left to another */
+    uint min_depth; /* smallest depth for bidirectional integrators: shorter paths are left to another */
     uint roulette_depth; /* Russian roulette from this segment of a walk on; NONE: never */
     float roulette_scale; /* a walk survives with this times its throughput, relative to that with which it began */
     uint strategies; /* STRATEGIES_* (path/mis.h) of bidirectional integrators */
@@ -75,7 +74,8 @@ typedef struct PathParams {
 
 /* How the estimators of MMLT divide a path's contribution (path/partition.h). */
 typedef struct PartitionParams {
-    uint split_direct; /* 1: path tracing splats paths of up to two segments separately (kernels/pt.cl) */
+    uint split_direct; /* 1: paths of up to two segments are splatted separately (kernels/pt.cl, bd_connect.cl) */
+    float own_more; /* with split_direct: other light that path tracing alone shows counts 1 + own_more times */
     float clamp_threshold; /* of a path's luminance times importance: pools show up to it, chains the excess */
 } PartitionParams;
 

@@ -46,6 +46,7 @@
       BUFFER_SHADOWS, BUFFER_VERTICES, BUFFER_DENSITIES)                                                               \
     X(bd_add_connections, 6, BUFFER_FRAME, BUFFER_GUIDE, BUFFER_PATHS, BUFFER_SHADOWS, BUFFER_SPLATS,                  \
       BUFFER_DIAGNOSTICS)                                                                                              \
+    X(bd_splat_direct, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)                               \
     X(bd_splat, 4, BUFFER_FRAME, BUFFER_PATHS, BUFFER_SPLATS, BUFFER_DIAGNOSTICS)
 
 #define KERNEL_LIST_IBPT(X)                                                                                            \

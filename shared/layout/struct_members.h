@@ -268,6 +268,7 @@
     MEMBER(PathParams, sobol)                                                                                          \
     STRUCT(PartitionParams)                                                                                            \
     MEMBER(PartitionParams, split_direct)                                                                              \
+    MEMBER(PartitionParams, own_more)                                                                                  \
     MEMBER(PartitionParams, clamp_threshold)                                                                           \
     STRUCT(PoolParams)                                                                                                 \
     MEMBER(PoolParams, enabled)                                                                                        \

@@ -22,6 +22,8 @@ SHARED_FUNCTION void bd_header_begin(__global const FrameParams *restrict frame,
     state_store(paths, stride, BD_CANDIDATE, item, 0u);
     state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_splat(0.0f));
     state_store(paths, stride, BD_GATHERED, item, 0u);
+    if (frame->partition.split_direct != 0u)
+        state_store_vec3(paths, stride, BD_DIRECT, item, vec3_splat(0.0f));
     walk_end(paths, rays, stride, item);
 }
 

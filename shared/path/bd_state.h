@@ -42,6 +42,8 @@
 /* Of a chain (chain/shift.h); a pool uses the same words for other fields */
 #define BD_SHIFT_NUMBERS 27u /* saved coordinates of the directions at z_1 and z_2, 2 each */
 #define BD_SHIFT_DENSITY 33u /* of the last direction, by its lobe alone; 0: its numbers cannot be inverted */
+/* frame->partition.split_direct: direct light gathered for the pixel, 3; a pool uses the same words for other fields */
+#define BD_DIRECT 28u
 /* Of a pool (chain/pool.h) */
 #define BD_CANDIDATE_SUM 28u
 #define BD_CANDIDATE 29u

@@ -28,11 +28,14 @@ SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *rest
     state_store_float(rays, stride, RAY_T_MAX, item, 0.0f);
 }
 
-/* Adds to the radiance of the path's pixel. */
-SHARED_FUNCTION void bd_add_radiance(__global uint *restrict paths, uint stride, uint item, Vec3 radiance)
+/* Adds light of a path of `segments` segments to what is gathered for its pixel. */
+SHARED_FUNCTION void bd_add_radiance(__global const FrameParams *restrict frame, __global uint *restrict paths,
+                                     uint item, uint segments, Vec3 radiance)
 {
-    Vec3 sum = state_load_vec3(paths, stride, BD_RADIANCE, item);
-    state_store_vec3(paths, stride, BD_RADIANCE, item, vec3_add(sum, radiance));
+    bool apart = frame->partition.split_direct != 0u && segments < SPLAT_DEPTH_MIN;
+    uint stride = frame->pass.stride, field = apart ? BD_DIRECT : BD_RADIANCE;
+    Vec3 sum = state_load_vec3(paths, stride, field, item);
+    state_store_vec3(paths, stride, field, item, vec3_add(sum, radiance));
 }
 
 /* The first ray of a walk. */

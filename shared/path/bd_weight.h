@@ -55,12 +55,12 @@ SHARED_FUNCTION_APART void walk_add_medium_emission(const SceneView *scene, __gl
 {
     __global const FrameParams *frame = scene->frame;
     uint stride = frame->pass.stride;
-    if (frame->pool.enabled != 0u || frame->path.min_depth > 1u || !strategy_wanted(frame, 0u, depth + 1u))
+    if (frame->pool.enabled != 0u || frame->partition.split_direct != 0u || !strategy_wanted(frame, 0u, depth + 1u))
         return;
     if (frame->film.split_depths != 0u)
         state_store(paths, stride, BD_GATHERED, item, depth);
     bd_add_radiance(
-        paths, stride, item,
+        frame, paths, item, depth,
         vec3_mul(state_load_vec3(paths, stride, BD_BETA, item), state_load_vec3(hits, stride, HIT_EMISSION, item)));
 }
 

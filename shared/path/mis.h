@@ -43,14 +43,16 @@ SHARED_FUNCTION float mis_power(float pdf_a, float pdf_b)
 #define STRATEGY_LIGHT 0x2u /* s = 1: a point on a light is drawn for the last vertex but one */
 #define STRATEGY_CAMERA 0x4u /* t = 1, s >= 2: the light's path is connected to the lens */
 #define STRATEGY_INNER 0x8u /* s >= 2, t >= 2 */
+#define STRATEGY_CAMERA_DIRECT 0x10u /* t = 1, s = 2: STRATEGY_CAMERA for paths of two segments */
 #define STRATEGIES_PT (STRATEGY_HIT | STRATEGY_LIGHT)
-#define STRATEGIES_IBPT (STRATEGIES_PT | STRATEGY_CAMERA)
+#define STRATEGIES_IBPT (STRATEGIES_PT | STRATEGY_CAMERA | STRATEGY_CAMERA_DIRECT)
 #define STRATEGIES_BDPT (STRATEGIES_IBPT | STRATEGY_INNER)
 
 /* Whether the set has the strategy with s light vertices for paths of k segments (s <= k). */
 SHARED_FUNCTION bool strategy_taken(uint set, uint s, uint k)
 {
-    uint kind = s == 0u ? STRATEGY_HIT : s == 1u ? STRATEGY_LIGHT : s == k ? STRATEGY_CAMERA : STRATEGY_INNER;
+    uint camera = k == 2u ? STRATEGY_CAMERA_DIRECT : STRATEGY_CAMERA;
+    uint kind = s == 0u ? STRATEGY_HIT : s == 1u ? STRATEGY_LIGHT : s == k ? camera : STRATEGY_INNER;
     return (set & kind) != 0u && (k > 1u || s == 0u);
 }
 

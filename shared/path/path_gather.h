@@ -1,6 +1,6 @@
 /* What a path of path tracing gathers, and which part of it as what. With frame->partition.split_direct, as one of
  * MMLT's estimators, it keeps apart
- *   - what no other estimator shows: direct light, what media emit, and what photons draw where no light subpath can
+ *   - direct light, and what no other estimator shows: what media emit, and what photons draw where no light subpath can
  *     make the path (PATH_OWN),
  *   - of all other light what is below the clamping threshold (PATH_RADIANCE),
  *   - the rest of that, its rare light (PATH_RARE), which chains show, too.
@@ -29,9 +29,8 @@ SHARED_FUNCTION void path_gather(__global uint *restrict paths, uint stride, uin
     state_store_vec3(paths, stride, field, item, vec3_add(state_load_vec3(paths, stride, field, item), light));
 }
 
-/* Adds light of a path of `segments` segments that no other estimator shows. */
-SHARED_FUNCTION void path_add_own(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                  uint segments, Vec3 light)
+SHARED_FUNCTION void path_add_direct(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                     uint segments, Vec3 light)
 {
     uint stride = frame->pass.stride, field = PATH_OWN;
     if (frame->partition.split_direct == 0u) {
@@ -41,6 +40,14 @@ SHARED_FUNCTION void path_add_own(__global const FrameParams *frame, __global ui
     path_gather(paths, stride, field, item, light);
 }
 
+/* Adds light of a path of `segments` segments that no other estimator shows. It shares its layer with direct light, of
+ * which bidirectional path tracing has samples, too; so each of its own counts for as many as there are of both. */
+SHARED_FUNCTION void path_add_own(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                  uint segments, Vec3 light)
+{
+    path_add_direct(frame, paths, item, segments, vec3_scale(light, 1.0f + frame->partition.own_more));
+}
+
 /* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold
  * (path_shown). */
 SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __global uint *restrict paths, uint item,
@@ -48,7 +55,7 @@ SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __glob
 {
     uint stride = frame->pass.stride;
     if (segments <= DIRECT_DEPTH) {
-        path_add_own(frame, paths, item, segments, light);
+        path_add_direct(frame, paths, item, segments, light);
         return;
     }
     path_depth_store(frame, paths, item, segments);

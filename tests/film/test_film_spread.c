@@ -231,9 +231,9 @@ START_TEST(test_normalized)
 }
 END_TEST
 
-/* film_light_gather adds the pixels' own samples to what came from the light: their mean times their number whatever
- * lies near a pixel, or as they are. Nothing of them is left, and full sums are full. */
-START_TEST(test_gathered)
+/* film_normalize_bidirectional divides direct light, and of the light sums what the rare sums repeat but not what came
+ * from the light, whatever lies near a pixel; or nothing, and then no direct light is left. Full sums are full. */
+START_TEST(test_normalized_bidirectional)
 {
     const FilterSettings *s = &FILTER_CASES[_i].settings;
     const uint samples = 2;
@@ -244,21 +244,56 @@ START_TEST(test_gathered)
         Film film;
         setup(&f, s, RECONSTRUCTION_SPLAT, &film);
         samples_add(&f, &film, SPLAT_SAMPLE, samples, 0, vec3(3.0f, 1.0f, 1.0f));
-        int64_t own[PIXELS], light[PIXELS];
+        samples_add(&f, &film, SPLAT_LIGHT | SPLAT_RARE, samples, 0, vec3(5.0f, 1.0f, 1.0f));
+        int64_t own[PIXELS];
         for (int i = 0; i < PIXELS; ++i) {
-            own[i] = film.sums[3 * i];
-            film.light_sums[3 * i] = light[i] = (int64_t)(i + 1) << 30;
+            own[i] = film.rare_sums[3 * i];
+            film.light_sums[3 * i] += (int64_t)(i + 1) << 30;
         }
-        film.sums[3] = (int64_t)SUM_FULL;
+        film.rare_sums[3] = (int64_t)SUM_FULL;
         film.threads = 1 + _i % 3;
-        film_light_gather(&film, divides ? samples : 0);
+        film_normalize_bidirectional(&film, divides ? samples : 0);
         for (int i = 0; i < PIXELS; ++i) {
-            double expected = (double)light[i] + (divides ? 3.0 * samples * 0x1p30 : (double)own[i]);
+            double light = (i + 1) * 0x1p30 + (divides ? 5.0 * samples * 0x1p30 : (double)own[i]);
             if (i != 1)
-                TEST_NEAR((double)film.light_sums[3 * i] / expected, 1.0, 1e-6);
-            TEST_TRUE(film.sums[3 * i] == 0 && film_count(&film, (size_t)i) == 0);
+                TEST_NEAR((double)film.light_sums[3 * i] / light, 1.0, 1e-6);
+            TEST_NEAR((double)film.sums[3 * i] / 0x1p30, divides ? 3.0 * samples : 0.0, 1e-5);
+            ck_assert_uint_eq(film_count(&film, (size_t)i), divides ? samples * SPREAD_PARTS : 0);
+            ck_assert_int_eq(film.rare_sums[3 * i], 0);
         }
-        TEST_TRUE(film.light_sums[3] == (int64_t)SUM_FULL);
+        if (divides)
+            TEST_TRUE(film.light_sums[3] == (int64_t)SUM_FULL);
+        teardown(&f, &film);
+    }
+}
+END_TEST
+
+/* More samples of direct light in the same film: all of them are divided by their number near the pixel, and what is
+ * new in other layers by that of the new ones. */
+START_TEST(test_normalized_again)
+{
+    const FilterSettings *s = &FILTER_CASES[_i].settings;
+    const uint before = 2, samples = 3;
+    LightFixture f;
+    Film film;
+    if (signed_filter(s))
+        return;
+    for (int spread = 0; spread < 2; ++spread) {
+        setup(&f, s, spread ? RECONSTRUCTION_SPLAT : RECONSTRUCTION_SAMPLE, &film);
+        samples_add(&f, &film, SPLAT_SAMPLE, before, 0, vec3(4.0f, 1.0f, 1.0f));
+        samples_add(&f, &film, SPLAT_LIGHT | SPLAT_RARE, before, 0, vec3(5.0f, 1.0f, 1.0f));
+        film_normalize_bidirectional(&film, before);
+        film_pixels_clear_light(&film, 0, PIXELS);
+        samples_add(&f, &film, SPLAT_SAMPLE, samples, before, vec3(4.0f, 1.0f, 1.0f));
+        samples_add(&f, &film, SPLAT_LIGHT, samples, before, vec3(6.0f, 1.0f, 1.0f));
+        film_normalize(&film, samples);
+        for (int i = 0; i < PIXELS && spread; ++i) {
+            ck_assert_uint_eq(film_count(&film, (size_t)i), (before + samples) * SPREAD_PARTS);
+            TEST_NEAR((double)film.sums[3 * i] / 0x1p30, 4.0 * (before + samples), 1e-5);
+            TEST_NEAR((double)film.light_sums[3 * i] / 0x1p30, 6.0 * samples, 1e-5);
+        }
+        for (int i = 0; i < PIXELS && !spread; ++i) /* pixels have their own samples, as many as are counted */
+            TEST_NEAR((double)film.sums[3 * i] / 0x1p30, 4.0 * film_count(&film, (size_t)i), 1e-5);
         teardown(&f, &film);
     }
 }
@@ -443,7 +478,8 @@ TCase *film_spread_tcase(void)
     tcase_set_timeout(tcase, 120);
     tcase_add_loop_test(tcase, test_shares, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_constant, 0, FILTER_CASE_COUNT);
-    tcase_add_loop_test(tcase, test_gathered, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_normalized_bidirectional, 0, FILTER_CASE_COUNT);
+    tcase_add_loop_test(tcase, test_normalized_again, 0, FILTER_CASE_COUNT);
     tcase_add_loop_test(tcase, test_normalized, 0, FILTER_CASE_COUNT);
     tcase_add_test(tcase, test_normalized_merge);
     tcase_add_test(tcase, test_merge);

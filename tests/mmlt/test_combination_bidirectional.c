@@ -48,9 +48,9 @@ static double error_with(const Combination *combination, const double samples[ES
         double others = others_variance(combination, &tile, samples, factor),
                own = most > 0.0 ? own_variance(&tile, samples) : 0.0,
                w = most > 0.0 ? fmin(others / (own + others), most) : 0.0;
-        sum +=
-            (w * w * own + (1.0 - w) * (1.0 - w) * others + (direct ? tile.direct / samples[ESTIMATOR_PATHS] : 0.0)) /
-            (tile.light * tile.light + dark);
+        sum += (w * w * own + (1.0 - w) * (1.0 - w) * others +
+                (direct ? tile.direct / (samples[ESTIMATOR_PATHS] + samples[ESTIMATOR_BIDIRECTIONAL]) : 0.0)) /
+               (tile.light * tile.light + dark);
     }
     return sum;
 }
@@ -116,6 +116,8 @@ START_TEST(test_weights_bidirectional)
                   expected[_i], 1e-5);
         capped += least > most;
     }
+    TEST_NEAR(pixel_series_weight(&pupil.combination.direct, 0),
+              samples[ESTIMATOR_PATHS] + (_i == 2 ? 0.0 : samples[ESTIMATOR_BIDIRECTIONAL]), 0.0);
     TEST_TRUE(capped > 0.1 * PIXELS && capped < 0.9 * PIXELS);
     free(before);
     known_destroy(&teacher);
@@ -126,7 +128,7 @@ END_TEST
 /* ---- what a generation counts ------------------------------------------------------------------------------------ */
 
 /* A generation counts by its work times the error of the best division without bidirectional path tracing over its own,
- * whether it has any or not, so that those before and with it compare; with it no more than 16 times. Until its variance
+ * whether it has any or not, so that those before and with it compare; with it no more than 4 times. Until its variance
  * is known it counts by its work. */
 START_TEST(test_worth_bidirectional)
 {
@@ -159,7 +161,7 @@ START_TEST(test_worth_bidirectional)
         combination_rates(all);
         other = error_with(all, best, costs, false);
         own = error_with(all, samples, costs, false);
-        double limit = samples[3] > 0.0 ? 16.0 : 2.0, expected = work * fmin(other / own, limit);
+        double limit = samples[3] > 0.0 ? 4.0 : 2.0, expected = work * fmin(other / own, limit);
         most += other / own > limit;
         TEST_NEAR((double)combination_weights_set(all, samples) / expected, 1.0, 1e-4);
     }

@@ -175,6 +175,7 @@ START_TEST(test_sets)
             TEST_TRUE(strategy_taken(STRATEGIES_PT, s, k) == (s <= 1));
             TEST_TRUE(strategy_taken(STRATEGIES_IBPT, s, k) == (s <= 1 || s == k));
             TEST_TRUE(strategy_taken(STRATEGIES_BDPT, s, k));
+            TEST_TRUE(strategy_taken(STRATEGIES_BDPT & ~STRATEGY_CAMERA_DIRECT, s, k) == !(s == 2 && k == 2));
         }
 }
 END_TEST
