@@ -165,6 +165,14 @@ static void change_subtract_image(const CombinedImage *image, RowRange pixels)
         image->change->values[i] -= image->light[i];
 }
 
+static void pixels_empty(const ImageAdding *adding, RowRange pixels)
+{
+    if (adding->kind == ESTIMATOR_BIDIRECTIONAL)
+        film_pixels_clear_light(adding->film, pixels.first, pixels.end);
+    else
+        film_pixels_clear(adding->film, pixels.first, pixels.end);
+}
+
 static void row_add(void *context, size_t row)
 {
     const ImageAdding *adding = context;
@@ -178,10 +186,8 @@ static void row_add(void *context, size_t row)
         change_add_paths(adding, pixels);
     for (uint segments = SPLAT_DEPTH_MIN; adding->image->depths && segments <= adding->film->depth_last; ++segments)
         sums_add(adding, film_sums_of(adding, segments), pixels);
-    if (adding->take && adding->kind == ESTIMATOR_BIDIRECTIONAL)
-        film_pixels_clear_light(adding->film, pixels.first, pixels.end);
-    else if (adding->take)
-        film_pixels_clear(adding->film, pixels.first, pixels.end);
+    if (adding->take)
+        pixels_empty(adding, pixels);
 }
 
 /* Samples of direct light: those of path tracing, and those of bidirectional path tracing that are shown. */
