@@ -193,8 +193,8 @@ static void row_add(void *context, size_t row)
 /* Samples of direct light: those of path tracing, and those of bidirectional path tracing that are shown. */
 static double direct_samples(const CombinedImage *image)
 {
-    return image->samples[ESTIMATOR_PATHS] +
-           (image->teacher->bidirectional_trial ? 0.0 : image->samples[ESTIMATOR_BIDIRECTIONAL]);
+    const bool trial = image->teacher->bidirectional_trial;
+    return image->samples[ESTIMATOR_PATHS] + (trial ? 0.0 : image->samples[ESTIMATOR_BIDIRECTIONAL]);
 }
 
 static void film_add(CombinedImage *image, EstimatorKind kind, Film *film, bool take)

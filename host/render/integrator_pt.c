@@ -24,7 +24,7 @@ static size_t caustics_count(const PathSteps *steps)
     return 1 + 2 + (steps->caustic_shadows ? 4 : 3) * (size_t)CAUSTIC_VERTICES;
 }
 
-/* Directions drawn by photons. */
+/* A direction drawn by photons. */
 static void caustics_record(Recorder *recorder, const PathSteps *steps)
 {
     size_t end = recorder->count + caustics_count(steps);
@@ -40,13 +40,14 @@ static void caustics_record(Recorder *recorder, const PathSteps *steps)
     assert(recorder->count == end);
 }
 
-/* From a vertex to the next ray. Kernels after caustics see no live rays. */
-static void vertex_record(Recorder *recorder, const PathSteps *steps)
+/* From the vertex after `depth` segments to the next ray. Kernels after caustics see no live rays. */
+static void vertex_record(Recorder *recorder, const PathSteps *steps, uint depth)
 {
     recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
     recorder_step(recorder, STEP_TRACE_SHADOW);
     recorder_kernel(recorder, KERNEL_pt_add_lights, true);
-    if (steps->caustics)
+    const uint draws = depth <= RECEIVER_DRAWS_LAST ? RECEIVER_DRAWS : 1;
+    for (uint i = 0; i < draws && steps->caustics; ++i)
         caustics_record(recorder, steps);
     recorder_kernel(recorder, KERNEL_pt_extend_paths, !steps->caustics);
 }
@@ -89,7 +90,7 @@ static void steps_record(Recorder *recorder, const PathSteps *steps)
             splat_record(recorder, steps);
             recorder_step(recorder, STEP_SPLAT);
         }
-        vertex_record(recorder, steps);
+        vertex_record(recorder, steps, depth);
         if (skips && !steps->caustics && (!steps->split || depth > 1))
             recorder_skip(recorder, RECORDER_END);
     }
@@ -140,6 +141,7 @@ static const StateField PATH_FIELDS[] = {
     PATH_FIELD(PATH_LIGHT_SHOWN, 1, true, "shown part of the light sample"),
     PATH_FIELD(PATH_OFFSET, 1, false, "place in the pixel's filter"),
     PATH_FIELD(PATH_CAUSTIC_OVER, 1, true, "path tracing over the caustic path"),
+    PATH_FIELD(PATH_CAUSTIC_DRAWN, 1, false, "directions drawn by photons"),
     PATH_FIELD(PATH_LIGHT_PDF, 1, true, "density of the light sample"),
     PATH_FIELD(PATH_LIGHT_OTHER, 1, true, "density of its direction by the BSDF"),
 };
@@ -160,7 +162,7 @@ static bool pt_list(FrameParams *frame, StepList *list, Error *error)
                              .caustics = frame->photons.count > 0,
                              .caustic_shadows = caustic_has_shadows(frame_features(frame)),
                              .own_last = pt_shows_more(frame)};
-    size_t per_segment = 11 + (steps.caustics ? caustics_count(&steps) : 0);
+    size_t per_segment = 11 + (steps.caustics ? RECEIVER_DRAWS * caustics_count(&steps) : 0);
     if (!recorder_init(&recorder, 10 + (size_t)frame->path.max_depth * per_segment, error))
         return false;
     steps_record(&recorder, &steps);

@@ -93,8 +93,10 @@ __kernel void pt_start_paths(__global const FrameParams *restrict frame, __globa
         state_store_vec3(paths, stride, PATH_RARE, item, vec3_splat(0.0f));
         state_store_vec3(paths, stride, PATH_OWN, item, vec3_splat(0.0f));
     }
-    if (frame->photons.count > 0u)
+    if (frame->photons.count > 0u) {
         state_store(paths, stride, PATH_DELTA, item, 0u);
+        state_store(paths, stride, PATH_CAUSTIC_DRAWN, item, 0u);
+    }
     state_store_vec3(paths, stride, PATH_POINT, item, ray.o);
     if (SCENE_HAS(scene, FEATURE_MEDIUM))
         path_ray_media(scene, paths, rays, item, frame->camera.medium, 1u);
@@ -424,6 +426,7 @@ __kernel void pt_extend_paths(__global const FrameParams *restrict frame, __glob
     }
     ray_store(rays, stride, item, ray);
     if (frame->photons.count > 0u) {
+        state_store(paths, stride, PATH_CAUSTIC_DRAWN, item, 0u);
         receiver_leave(paths, stride, PATH_RECEIVER, item, p, wi,
                        receiver_pdf(scene, &bsdf, sample.pdf_w, sample.delta));
         if (sample.delta != 0u && depth <= RECEIVER_LAST)

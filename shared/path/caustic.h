@@ -15,36 +15,44 @@
 #include "path/path_random.h"
 #include "path/path_state.h"
 
-/* Random numbers of the receiver after `depth` segments: `what` 0 for the photon and the direction, then the smooth
- * vertices in order. */
+/* Blocks of random numbers from one direction of a receiver to its next. */
+#define CAUSTIC_DRAW_BLOCKS 0x10000u
+
+/* Random numbers of the latest direction of the receiver after `depth` segments: `what` 0 for the photon and the
+ * direction, then the smooth vertices in order. */
 SHARED_FUNCTION Random4 caustic_random(__global const FrameParams *frame, __global const uint *paths, uint item,
                                        uint depth, uint what)
 {
-    uint stride = frame->pass.stride;
+    uint stride = frame->pass.stride, draw = state_load(paths, stride, PATH_CAUSTIC_DRAWN, item) - 1u;
     return sample_random(frame, state_load(paths, stride, PATH_PIXEL, item),
-                         state_load(paths, stride, PATH_SAMPLE, item), depth * (CAUSTIC_VERTICES + 1u) + what,
-                         PATH_STREAM_CAUSTIC, 1u);
+                         state_load(paths, stride, PATH_SAMPLE, item),
+                         draw * CAUSTIC_DRAW_BLOCKS + depth * (CAUSTIC_VERTICES + 1u) + what, PATH_STREAM_CAUSTIC, 1u);
 }
 
-/* Draws a direction for the path's vertex and stores its ray; none if there are no photons around or it brings
- * nothing. */
+/* Draws the next direction of the path's vertex and stores its ray; none if it has drawn all, there are no photons
+ * around, or it brings nothing. Of several, each chooses among its part of the photons. */
 SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restrict paths, __global uint *restrict rays,
                                    uint item)
 {
     __global const FrameParams *frame = scene->frame;
     PhotonParams params = frame->photons;
     uint stride = frame->pass.stride, depth = state_load(paths, stride, PATH_DEPTH, item);
-    if (depth + 2u > frame->path.max_depth ||
+    uint delta = state_load(paths, stride, PATH_DELTA, item),
+         drawn = state_load(paths, stride, PATH_CAUSTIC_DRAWN, item);
+    const uint draws = receiver_draw_count(delta, depth);
+    state_store(paths, stride, PATH_CAUSTIC_DRAWN, item, drawn + 1u);
+    if (drawn >= draws || depth + 2u > frame->path.max_depth ||
         (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u ||
         bsdf_kind_load(scene, paths, stride, PATH_BSDF, item) == MATERIAL_PHASE ||
-        !receiver_draws(params.everywhere, state_load(paths, stride, PATH_DELTA, item), depth))
+        !receiver_draws(params.everywhere, delta, depth))
         return;
     Vec3 p = state_load_vec3(paths, stride, PATH_POINT, item);
     PhotonSets found = photon_sets(params, scene->photons, p);
     if (!(found.weight > 0.0f))
         return;
     Random4 random = caustic_random(frame, paths, item, depth, 0u);
-    PhotonLobe lobe = photon_lobe(params, scene->photons, photon_choose(params, &found, random_float(random.x[0])), p);
+    float choice = ((float)drawn + random_float(random.x[0])) / (float)draws;
+    PhotonLobe lobe = photon_lobe(params, scene->photons, photon_choose(params, &found, choice), p);
     Vec3 w;
     if (!photon_lobe_sample(&lobe, vec2(random_float(random.x[1]), random_float(random.x[2])), &w))
         return;
@@ -52,7 +60,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     Frame shading = frame_load(paths, stride, PATH_FRAME, item);
     BsdfValue value = bsdf_eval(scene, &bsdf, state_load_vec3(paths, stride, PATH_WO, item), frame_to_local(shading, w),
                                 TRANSPORT_RADIANCE);
-    float density = photon_density(params, scene->photons, &found, p, w, lobe.light);
+    float density = (float)draws * photon_density(params, scene->photons, &found, p, w, lobe.light);
     if (lobe.light == NONE) { /* lights of no extent are hit by nothing else */
         if (caustic_rest_of(value.pdf_w, density) == 1.0f)
             return;

@@ -2,7 +2,8 @@
  * scatters otherwise. The receiver draws one more direction by the photons around it (path/photon.h) with density q,
  * beside the one that its BSDF draws with density p. Of a path's contribution f that direction estimates f q / (p + q):
  * the sample has the weight f / (p + q) (balance heuristic, path/mis.h). The rest, f p / (p + q), is left to camera
- * subpaths that hit the light (s = 0), for which this is a factor of f. So any photons give the right sum.
+ * subpaths that hit the light (s = 0), for which this is a factor of f. So any photons give the right sum. A receiver
+ * that draws n directions (receiver_draw_count) has n q for q.
  *
  * Where light subpaths can make the path, too, by a connection of two vertices that both scatter otherwise than by a
  * delta lobe (the camera is one), their densities do not depend on the size of the light, and photons are not needed:
@@ -70,6 +71,18 @@ SHARED_FUNCTION uint receiver_find(uint everywhere, uint delta, uint last)
     return number > 0u && caustic && receiver_draws(everywhere, delta, number) ? number : 0u;
 }
 
+/* The first receiver of a camera subpath draws so many directions, if no vertex before it scattered otherwise than by a
+ * delta lobe, and if it is none behind RECEIVER_DRAWS_LAST. */
+#define RECEIVER_DRAWS 2u
+#define RECEIVER_DRAWS_LAST 4u
+
+/* How many directions z_number draws by photons, if it does. delta: receiver_draws. */
+SHARED_FUNCTION uint receiver_draw_count(uint delta, uint number)
+{
+    uint before = ((1u << number) - 1u) & ~1u;
+    return number <= RECEIVER_DRAWS_LAST && (delta & before) == before ? RECEIVER_DRAWS : 1u;
+}
+
 /* How a camera subpath left its latest vertex that scattered otherwise than by a delta lobe, in fields from `base`
  * on. */
 #define RECEIVER_PDF 0u /* p of the direction */
@@ -102,11 +115,13 @@ SHARED_FUNCTION float receiver_rest(const SceneView *scene, __global const uint 
 {
     PhotonParams params = scene->frame->photons;
     uint stride = scene->frame->pass.stride;
-    if (params.count == 0u || receiver_find(params.everywhere, delta, last) == 0u)
+    uint number = params.count == 0u ? 0u : receiver_find(params.everywhere, delta, last);
+    if (number == 0u)
         return 1.0f;
     float q = caustic_density(scene, state_load_vec3(paths, stride, base + RECEIVER_POINT, item),
                               state_load_vec3(paths, stride, base + RECEIVER_DIRECTION, item), NONE);
-    return caustic_rest_of(state_load_float(paths, stride, base + RECEIVER_PDF, item), q);
+    float draws = (float)receiver_draw_count(delta, number);
+    return caustic_rest_of(state_load_float(paths, stride, base + RECEIVER_PDF, item), draws * q);
 }
 
 #endif

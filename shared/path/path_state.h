@@ -39,11 +39,12 @@
 #define PATH_OFFSET 66u /* in the pixel's filter (camera/splat_offset.h) */
 /* With photons: throughput with which path tracing without them would find the path, over PATH_CAUSTIC_BETA */
 #define PATH_CAUSTIC_OVER 67u
-#define PATH_WORDS 68u
+#define PATH_CAUSTIC_DRAWN 68u /* directions that the vertex has drawn by photons */
+#define PATH_WORDS 69u
 /* In scenes with media, where PATH_LIGHT is unweighted */
-#define PATH_LIGHT_PDF 68u /* density of the light sample */
-#define PATH_LIGHT_OTHER 69u /* of its direction by the Bsdf; 0: it cannot be hit */
-#define PATH_MEDIA_WORDS 70u
+#define PATH_LIGHT_PDF 69u /* density of the light sample */
+#define PATH_LIGHT_OTHER 70u /* of its direction by the Bsdf; 0: it cannot be hit */
+#define PATH_MEDIA_WORDS 71u
 
 #define PATH_FLAG_DELTA 0x1u /* the last direction is a delta lobe's (or the camera's): no light sample competes */
 
