@@ -299,6 +299,37 @@ START_TEST(test_rest)
 }
 END_TEST
 
+/* What is left to camera subpaths that hit the light by themselves is what all directions leave that the receiver draws:
+ * two at the first vertex that scatters otherwise than by a delta lobe, up to the fourth vertex, elsewhere one. */
+START_TEST(test_rest_of_draws)
+{
+    static const struct {
+        uint delta, last, draws;
+    } cases[] = {{0x4u, 2, 2}, {0xau, 3, 2}, {0xeu, 4, 0}, {0x1cu, 4, 2}, {0x2eu, 5, 2}, {0x5eu, 6, 1}, {0x8u, 3, 1}};
+    uint words[1 + PHOTON_WORDS] = {0}, paths[RECEIVER_WORDS] = {0};
+    FrameParams frame = {.pass.stride = 1,
+                         .photons = {.count = 1,
+                                     .everywhere = 1,
+                                     .first = {0, 1, 1, 1, 1},
+                                     .level = {1, 1, 1, 1},
+                                     .weight = {1.0f},
+                                     .cells_per_unit = 1.0f}};
+    const SceneView scene = {.frame = &frame, .photons = words};
+    const float p = 0.01f, spread = 0.1f;
+    uint *photon = words + 1;
+    photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
+    photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
+    photon[PHOTON_LIGHT] = NONE;
+    receiver_leave(paths, 1, 0, 0, vec3_splat(0.5f), vec3(0.0f, 0.0f, 1.0f), p);
+    const double q = (double)caustic_density(&scene, vec3_splat(0.5f), vec3(0.0f, 0.0f, 1.0f), NONE);
+    ck_assert_double_gt(q, 8.0 * (double)p);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        double rest = (double)receiver_rest(&scene, paths, 0, 0, cases[i].delta, cases[i].last);
+        ck_assert_double_eq_tol(rest, (double)p / ((double)p + cases[i].draws * q), 1e-6);
+    }
+}
+END_TEST
+
 /* ---- the photons ------------------------------------------------------------------------------------------------- */
 
 /* The density of directions integrates to the probability that one is drawn, and is that of the directions drawn: the
@@ -484,6 +515,7 @@ int main(void)
     TCase *photons = tcase_create("photons");
     tcase_add_test(photons, test_receivers);
     tcase_add_test(photons, test_rest);
+    tcase_add_test(photons, test_rest_of_draws);
     tcase_add_test(photons, test_lobe);
     tcase_add_test(photons, test_density);
     tcase_add_test(photons, test_grid);
