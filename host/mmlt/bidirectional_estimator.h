@@ -1,11 +1,12 @@
-/* Bidirectional path tracing beside the chains: all light of the paths that chains make, each sample with a light subpath
- * of its own. It leaves nothing to chains, so that it has fireflies; but where light comes from behind an opening or
- * from a covered lamp, all other estimators are worse. Its direct light, by the strategies of path tracing (s <= 1), counts
- * with that of path tracing, sample for sample; what photons draw (path/caustic.h) and media emit is left to path
- * tracing.
+/* Bidirectional path tracing beside the chains: all light of the paths that chains make, each sample with a light
+ * subpath of its own. It leaves nothing to chains, so that it has fireflies; but where light comes from behind an
+ * opening or from a covered lamp, all other estimators are worse. Its direct light, by the strategies of path
+ * tracing (s <= 1), counts with that of path tracing, sample for sample; what photons draw (path/caustic.h) and
+ * media emit is left to path tracing.
  *
- * A rendering begins with it where light comes through openings (layout/openings.h). Elsewhere a trial on some pixels,
- * which is not shown, tells its variance, unless path tracing alone would do. Then the plan has as much of it as is best, which may be none. */
+ * A rendering begins with it where light comes through openings (layout/openings.h). Elsewhere a trial on some
+ * pixels, which is not shown, tells its variance, unless path tracing alone would do. Then the plan has as much of
+ * it as is best, which may be none. */
 #ifndef TWINLIGHT_MMLT_BIDIRECTIONAL_ESTIMATOR_H
 #define TWINLIGHT_MMLT_BIDIRECTIONAL_ESTIMATOR_H
 

@@ -65,8 +65,8 @@ typedef struct Combination {
     bool shares; /* `known` and scratch are those of another combination */
     /* Path tracing of both replicas is one stratified sequence, not two (mmlt/paths_estimator.h). Then: the means of
      * its indirect and direct light over patches when they had `earlier_samples` per pixel (0: not yet), and the
-     * exponent a of the variance V n^-a of n samples, from how these means have changed (mmlt/combination_stratified.c).
-     * Direct light has the samples of bidirectional path tracing, too. */
+     * exponent a of the variance V n^-a of n samples, from how these means have changed
+     * (mmlt/combination_stratified.c). Direct light has the samples of bidirectional path tracing, too. */
     bool one_sequence;
     float *earlier[2];
     double earlier_samples[2], exponents[2];
@@ -131,8 +131,8 @@ typedef struct FilmLearning {
     int count;
 } FilmLearning;
 
-/* Begins with the images that a film of `samples` of an estimator holds: layers as in mmlt/combined_image.h. direct: the
- * number of samples of direct light, if the estimator is path tracing, of which there may be none then. */
+/* Begins with the images that a film of `samples` of an estimator holds: layers as in mmlt/combined_image.h. direct:
+ * the number of samples of direct light, if the estimator is path tracing, of which there may be none then. */
 void combination_learning_begin(FilmLearning *learning, Combination *combination, EstimatorKind kind, const Film *film,
                                 double samples, double direct);
 

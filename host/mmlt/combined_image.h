@@ -1,10 +1,11 @@
 /* The picture of a generation under way. Its estimators run one after the other and share one film; what each leaves
- * there is learnt from, weighted and added, and the film is free for the next. So a generation needs the memory of one
- * film and this.
+ * there is learnt from, weighted and added, and the film is free for the next. So a generation needs the memory of
+ * one film and this.
  *
- * Layers of the film: light_sums hold paths that all estimators make, up to the estimator's clamping threshold. Of path
- * tracing and of bidirectional path tracing `sums` hold direct light, and stay in the film from one to the other; of the
- * former rare_sums hold what of the light is rare. Of chains, `sums` hold the excess and rare_sums the rare light. */
+ * Layers of the film: light_sums hold paths that all estimators make, up to the estimator's clamping threshold. Of
+ * path tracing and of bidirectional path tracing `sums` hold direct light, and stay in the film from one to the
+ * other; of the former rare_sums hold what of the light is rare. Of chains, `sums` hold the excess and rare_sums the
+ * rare light. */
 #ifndef TWINLIGHT_MMLT_COMBINED_IMAGE_H
 #define TWINLIGHT_MMLT_COMBINED_IMAGE_H
 

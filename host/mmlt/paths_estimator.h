@@ -13,8 +13,7 @@ typedef struct PathsEstimator {
     Estimator complete; /* all light together, if `completes`: it takes less time */
     FrameParams complete_frame;
     bool completes;
-    bool
-        bidirectional; /* by bidirectional path tracing: all of its light is in the film's light_sums, but direct light */
+    bool bidirectional; /* by bidirectional path tracing: all of its light but direct light is in light_sums */
     bool combined; /* with the other estimators, which learn from it; otherwise it shows what these do not make */
     /* Generations forced_first ... forced_end - 1 have so many samples of every pixel each, whatever is wanted. */
     uint forced_first, forced_end, forced_each;

@@ -118,7 +118,7 @@ __kernel void bd_add_connections(__global const FrameParams *restrict frame, __g
     }
     if (visible)
         connection_depth_set(frame, paths, item, s + t - 1u);
-    connection_add(frame, paths, splats, diagnostics, item, t == 1u, s + t - 1u, visible);
+    connection_add(frame, paths, splats, diagnostics, item, t == 1u ? 0u : s + t - 1u, visible);
     connection_advance(paths, stride, item, frame->path.max_depth);
 }
 
@@ -144,10 +144,10 @@ __kernel void bd_splat_direct(__global const FrameParams *restrict frame, __glob
         gathered_splat(frame, paths, splats, diagnostics, item, BD_DIRECT, SPLAT_SAMPLE);
 }
 
-/* From: what was gathered for the pixel. To: its splat. With frame->partition.split_direct it goes where splats from the
- * light go, and also apart from these, since the film divides it by the number of samples near the pixel
- * (film_normalize_bidirectional). With frame->film.split_depths it also runs in the course of a path, and then clears
- * what was gathered. */
+/* From: what was gathered for the pixel. To: its splat. With frame->partition.split_direct it goes where splats from
+ * the light go, and also apart from these, since the film divides it by the number of samples near the pixel
+ * (film_normalize_bidirectional). With frame->film.split_depths it also runs in the course of a path, and then
+ * clears what was gathered. */
 __kernel void bd_splat(__global const FrameParams *restrict frame, __global uint *restrict paths,
                        __global uint *restrict splats, __global uint *restrict diagnostics)
 {

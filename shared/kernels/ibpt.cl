@@ -139,8 +139,9 @@ __kernel void ib_add_connections(__global const FrameParams *restrict frame, __g
     if (item >= frame->pass.item_count)
         return;
     bool visible = shadow_take(shadows, stride, item);
-    connection_add(frame, paths, splats, diagnostics, item, state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT,
-                   state_load(paths, stride, BD_DEPTH, item) + 1u, visible);
+    bool from_lens = state_load(paths, stride, BD_SIDE, item) == SIDE_LIGHT;
+    uint segments = state_load(paths, stride, BD_DEPTH, item) + 1u;
+    connection_add(frame, paths, splats, diagnostics, item, from_lens ? 0u : segments, visible);
 }
 
 /* From: the vertex. To: the running product; the next ray, or the walk's end by absorption or Russian roulette; no

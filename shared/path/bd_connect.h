@@ -232,23 +232,23 @@ SHARED_FUNCTION bool shadow_take(__global uint *restrict shadows, uint stride, u
     return cast && state_load(shadows, stride, SHADOW_OCCLUDED, item) == 0u;
 }
 
-/* Adds a connection whose shadow ray has been traced, a path of `segments` segments: gathered for the path's pixel, or,
- * from the lens (t = 1), splatted. */
+/* Adds a connection whose shadow ray has been traced: a path of `gathered` segments for the path's pixel, or, if
+ * that is 0, from the lens (t = 1), splatted. */
 SHARED_FUNCTION void connection_add(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                     __global uint *restrict splats, __global uint *restrict diagnostics, uint item,
-                                    bool from_lens, uint segments, bool visible)
+                                    uint gathered, bool visible)
 {
     uint stride = frame->pass.stride;
     Vec3 contribution = state_load_vec3(paths, stride, BD_CONTRIBUTION, item);
     uint target = state_load(paths, stride, BD_TARGET, item);
-    if (from_lens && visible && target != NONE)
+    if (gathered == 0u && visible && target != NONE)
         splat_store(splats, diagnostics, stride, item, SPLAT_LIGHT | target,
                     state_load(paths, stride, BD_TARGET_OFFSET, item),
                     vec3_scale(contribution, state_load_float(paths, stride, BD_TARGET_WEIGHT, item)));
-    else if (from_lens)
+    else if (gathered == 0u)
         state_store(splats, stride, SPLAT_PIXEL, item, NONE);
     else if (visible)
-        bd_add_radiance(frame, paths, item, segments, contribution);
+        bd_add_radiance(frame, paths, item, gathered, contribution);
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* What a path of path tracing gathers, and which part of it as what. With frame->partition.split_direct, as one of
  * MMLT's estimators, it keeps apart
- *   - direct light, and what no other estimator shows: what media emit, and what photons draw where no light subpath can
- *     make the path (PATH_OWN),
+ *   - direct light, and what no other estimator shows: what media emit, and what photons draw where no light subpath
+ *     can make the path (PATH_OWN),
  *   - of all other light what is below the clamping threshold (PATH_RADIANCE),
  *   - the rest of that, its rare light (PATH_RARE), which chains show, too.
  * Otherwise it gathers all in PATH_RADIANCE. */

@@ -299,8 +299,9 @@ START_TEST(test_rest)
 }
 END_TEST
 
-/* What is left to camera subpaths that hit the light by themselves is what all directions leave that the receiver draws:
- * two at the first vertex that scatters otherwise than by a delta lobe, up to the fourth vertex, elsewhere one. */
+/* What is left to camera subpaths that hit the light by themselves is what all directions leave that the receiver
+ * draws: two at the first vertex that scatters otherwise than by a delta lobe, up to the fourth vertex, elsewhere
+ * one. */
 START_TEST(test_rest_of_draws)
 {
     static const struct {
