@@ -258,7 +258,9 @@ static int64_t sum_normalized(int64_t light, int64_t own, double factor)
 {
     if (own != film_sum_shown(own))
         return own;
-    return film_sum_rounded((double)film_sum_shown(light) + (factor - 1.0) * (double)own);
+    if (light != film_sum_shown(light))
+        return light;
+    return film_sum_rounded((double)light + (factor - 1.0) * (double)own);
 }
 
 static void row_normalize_bidirectional(void *context, size_t row)

@@ -79,8 +79,10 @@ SHARED_FUNCTION uint receiver_find(uint everywhere, uint delta, uint last)
 /* How many directions z_number draws by photons, if it does. delta: receiver_draws. */
 SHARED_FUNCTION uint receiver_draw_count(uint delta, uint number)
 {
+    if (number > RECEIVER_DRAWS_LAST)
+        return 1u;
     uint before = ((1u << number) - 1u) & ~1u;
-    return number <= RECEIVER_DRAWS_LAST && (delta & before) == before ? RECEIVER_DRAWS : 1u;
+    return (delta & before) == before ? RECEIVER_DRAWS : 1u;
 }
 
 /* How a camera subpath left its latest vertex that scattered otherwise than by a delta lobe, in fields from `base`

@@ -29,8 +29,9 @@ SHARED_FUNCTION void path_gather(__global uint *restrict paths, uint stride, uin
     state_store_vec3(paths, stride, field, item, vec3_add(state_load_vec3(paths, stride, field, item), light));
 }
 
-SHARED_FUNCTION void path_add_direct(__global const FrameParams *frame, __global uint *restrict paths, uint item,
-                                     uint segments, Vec3 light)
+/* Direct light, or what path_add_own adds. */
+SHARED_FUNCTION void path_gather_apart(__global const FrameParams *frame, __global uint *restrict paths, uint item,
+                                       uint segments, Vec3 light)
 {
     uint stride = frame->pass.stride, field = PATH_OWN;
     if (frame->partition.split_direct == 0u) {
@@ -45,7 +46,7 @@ SHARED_FUNCTION void path_add_direct(__global const FrameParams *frame, __global
 SHARED_FUNCTION void path_add_own(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                   uint segments, Vec3 light)
 {
-    path_add_direct(frame, paths, item, segments, vec3_scale(light, 1.0f + frame->partition.own_more));
+    path_gather_apart(frame, paths, item, segments, vec3_scale(light, 1.0f + frame->partition.own_more));
 }
 
 /* Adds light of a path of `segments` segments. shown: the part of it that is below the clamping threshold
@@ -55,7 +56,7 @@ SHARED_FUNCTION void path_add_radiance(__global const FrameParams *frame, __glob
 {
     uint stride = frame->pass.stride;
     if (segments <= DIRECT_DEPTH) {
-        path_add_direct(frame, paths, item, segments, light);
+        path_gather_apart(frame, paths, item, segments, light);
         return;
     }
     path_depth_store(frame, paths, item, segments);
