@@ -88,7 +88,7 @@ static bool record_run(Backend *backend, const FrameParams *frame, const StepLis
         if (!backend->pilot)
             pool_record(backend, frame, list->guide);
         backend->pilot = false;
-    } else if (frame->path.strategies == integrator_bdpt()->strategies) {
+    } else if ((frame->path.strategies & STRATEGY_INNER) != 0) {
         trial_record(backend, frame);
     } else {
         sequence_record(backend, frame);
