@@ -99,6 +99,7 @@ SHARED_FUNCTION void state_store_vec3(__global uint *buffer, uint stride, uint f
  * SPLAT_DEPTH_MAX. */
 #define SPLAT_DEPTH_SHIFT 25u
 #define SPLAT_DEPTH_MIN 3u
+#define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u) /* light of paths up to this depth is direct light */
 #define SPLAT_DEPTH_MAX 31u
 
 SHARED_FUNCTION uint splat_depth(uint split_depths, uint segments)

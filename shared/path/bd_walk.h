@@ -32,7 +32,7 @@ SHARED_FUNCTION void walk_end(__global uint *restrict paths, __global uint *rest
 SHARED_FUNCTION void bd_add_radiance(__global const FrameParams *restrict frame, __global uint *restrict paths,
                                      uint item, uint segments, Vec3 radiance)
 {
-    bool apart = frame->partition.split_direct != 0u && segments < SPLAT_DEPTH_MIN;
+    bool apart = frame->partition.split_direct != 0u && segments <= DIRECT_DEPTH;
     uint stride = frame->pass.stride, field = apart ? BD_DIRECT : BD_RADIANCE;
     Vec3 sum = state_load_vec3(paths, stride, field, item);
     state_store_vec3(paths, stride, field, item, vec3_add(sum, radiance));

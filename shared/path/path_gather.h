@@ -13,9 +13,6 @@
 #include "path/partition.h"
 #include "path/path_state.h"
 
-/* Light of paths up to this depth is direct light. */
-#define DIRECT_DEPTH (SPLAT_DEPTH_MIN - 1u)
-
 /* With frame->film.split_depths: PATH_RADIANCE has light of paths of `segments` segments. */
 SHARED_FUNCTION void path_depth_store(__global const FrameParams *frame, __global uint *restrict paths, uint item,
                                       uint segments)

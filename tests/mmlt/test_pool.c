@@ -5,7 +5,6 @@
 #include "base/sample_statistics.h"
 #include "chain/pool.h"
 #include "mmlt/mmlt.h"
-#include "render/integrator.h"
 
 #include "math/rng.h"
 
