@@ -42,6 +42,7 @@ check_PROGRAMS += \
 	tests/test_options \
 	tests/test_partition \
 	tests/test_platform_bits \
+	tests/test_photon_lights \
 	tests/test_plan \
 	tests/test_pool \
 	tests/test_progress \
@@ -167,6 +168,7 @@ tests_test_mlt_option_SOURCES = tests/command/test_mlt_option.c
 tests_test_options_SOURCES = tests/command/test_options.c
 tests_test_progress_SOURCES = tests/render/test_progress.c
 tests_test_platform_bits_SOURCES = tests/math/test_platform_bits.c
+tests_test_photon_lights_SOURCES = tests/render/test_photon_lights.c
 tests_test_plan_SOURCES = tests/mmlt/test_plan.c
 tests_test_pool_SOURCES = tests/mmlt/test_pool.c
 tests_test_ranks_SOURCES = tests/ranks/test_ranks.c

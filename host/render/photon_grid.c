@@ -12,9 +12,9 @@
 #define COMPARED 8
 #define AGREEING 2
 
-/* The spread of slopes, relative to what the light's radius and the errors of predictions give: the light's points are
- * not the photon's, but photons of all of them are around. */
-#define SPREAD_OF_LIGHT 0.6
+/* The spread of slopes, relative to the standard deviation of the light's points and to the errors of predictions. For
+ * an even disc and exact predictions the variance is least with 1.8; docs/CAUSTICS.md. */
+#define SPREAD_OF_LIGHT 1.8
 #define SPREAD_OF_ERROR 1.0
 
 /* Least spread: rounding of directions. */
@@ -22,7 +22,7 @@
 
 /* Steradians: photons of lights with an extent whose lobe is wider are left out, since chance draws such a direction
  * often enough. */
-#define LOBE_MAX 0.1
+#define LOBE_MAX 0.2
 
 /* Kinds of photons that are counted; more are in the last group. */
 #define KINDS_MAX 64u
@@ -134,27 +134,35 @@ static double prediction_error(const GridEntry *entries, uint count, uint i)
     return errors[found < AGREEING ? found - 1 : AGREEING - 1];
 }
 
+/* Covariance of the slopes that show the light's points: by_light extent by_light^T; xx, xy, yy. */
+static void slopes_covariance(const PhotonRecord *record, double covariance[3])
+{
+    const double *m = record->by_light, *e = record->extent,
+                 a[4] = {m[0] * e[0] + m[1] * e[1], m[0] * e[1] + m[1] * e[2], m[2] * e[0] + m[3] * e[1],
+                         m[2] * e[1] + m[3] * e[2]};
+    covariance[0] = a[0] * m[0] + a[1] * m[1];
+    covariance[1] = a[0] * m[2] + a[1] * m[3];
+    covariance[2] = a[2] * m[2] + a[3] * m[3];
+}
+
 /* The lower triangular factor of the covariance of the light's spread and that of the prediction's error. */
 static void spread_set(PhotonRecord *record, double error)
 {
-    const double *by_light = record->by_light;
-    double scale = SPREAD_OF_LIGHT * record->light_radius, own = fmax(SPREAD_OF_ERROR * error, SPREAD_MIN);
-    double light = scale * scale;
-    double aa = light * (by_light[0] * by_light[0] + by_light[1] * by_light[1]) + own * own;
-    double ba = light * (by_light[0] * by_light[2] + by_light[1] * by_light[3]);
-    double bb = light * (by_light[2] * by_light[2] + by_light[3] * by_light[3]) + own * own;
-    double root = sqrt(aa), below = ba / root;
+    const double light = SPREAD_OF_LIGHT * SPREAD_OF_LIGHT, own = fmax(SPREAD_OF_ERROR * error, SPREAD_MIN);
+    double covariance[3];
+    slopes_covariance(record, covariance);
+    double root = sqrt(light * covariance[0] + own * own), below = light * covariance[1] / root;
     record->spread[0] = root;
     record->spread[1] = below;
-    record->spread[2] = sqrt(fmax(bb - below * below, own * own));
+    record->spread[2] = sqrt(fmax(light * covariance[2] + own * own - below * below, own * own));
 }
 
 /* The part of a lobe that the light fills. */
 static double light_part(const PhotonRecord *record)
 {
-    const double *by_light = record->by_light;
-    double scale = SPREAD_OF_LIGHT * record->light_radius;
-    double filled = fabs(by_light[0] * by_light[3] - by_light[1] * by_light[2]) * scale * scale;
+    const double *by_light = record->by_light, *e = record->extent;
+    double filled = fabs(by_light[0] * by_light[3] - by_light[1] * by_light[2]) *
+                    sqrt(fmax(e[0] * e[2] - e[1] * e[1], 0.0)) * SPREAD_OF_LIGHT * SPREAD_OF_LIGHT;
     return fmin(filled / (record->spread[0] * record->spread[2]), 1.0);
 }
 

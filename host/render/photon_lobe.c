@@ -1,118 +1,16 @@
 #include "render/photon_lobe.h"
 
-#include "light/delta.h"
-#include "light/infinite.h"
 #include "path/caustic_rest.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-/* Steps between neighbouring subpaths: small beside the shapes that light passes, large beside rounding. Relative to
- * the reach of the light (reach_set), and in radians; at least so many times the spacing of floats as large as the
- * scene. */
-#define POINT_STEP 3e-4
-#define POINT_STEP_ULPS 32.0
-#define DIRECTION_STEP 3e-4
 
 /* A neighbour that begins beside the surface of a lamp begins this many steps farther along its ray, so that it is
  * outside unless the ray grazes the surface. */
 #define STEPS_AHEAD 4.0f
 
-/* What lights of no extent count as: a sphere, relative to the least reach of one, and a cone's sine. */
-#define POINT_RADIUS 5e-4
-#define DISTANT_SINE 1e-3f
-
 /* Added to squared lengths where neighbours fall (almost) on one line, relative to them: near a focus a photon predicts
  * nothing but its own direction. */
 #define FLAT_PART 1e-6
-
-/* Bounds of the radius of light from infinity, in radians. */
-#define FAR_RADIUS_MIN 1e-5
-#define FAR_RADIUS_MAX 1.0
-
-bool photon_light_is_far(const PhotonLights *lights, uint light)
-{
-    return light_kind(&lights->view.lights[light]) >= LIGHT_DISTANT;
-}
-
-/* Sums the areas of a shape's lights, then turns each light's into a radius. A sphere shows a quarter of its area, a
- * cylinder one part in pi. */
-static bool radii_set(PhotonLights *lights, size_t shape_count, Error *error)
-{
-    const SceneView *view = &lights->view;
-    double *areas = calloc(shape_count + 1, sizeof *areas);
-    if (!areas)
-        return error_memory(error, shape_count * sizeof *areas, "lights");
-    for (uint i = 0; i < view->frame->scene.light_count; ++i)
-        if (light_kind(&view->lights[i]) == LIGHT_AREA)
-            areas[view->primitives[view->lights[i].primitive].shape_and_kind & PRIMITIVE_SHAPE_MASK] +=
-                (double)view->lights[i].area;
-    for (uint i = 0; i < view->frame->scene.light_count; ++i) {
-        if (light_kind(&view->lights[i]) != LIGHT_AREA)
-            continue;
-        uint word = view->primitives[view->lights[i].primitive].shape_and_kind;
-        uint kind = word >> PRIMITIVE_KIND_SHIFT;
-        double part = kind == PRIMITIVE_SPHERE ? 0.25 : kind == PRIMITIVE_CYLINDER ? 1.0 / M_PI : 1.0;
-        lights->radius[i] = sqrt(part * areas[word & PRIMITIVE_SHAPE_MASK] / M_PI);
-    }
-    free(areas);
-    return true;
-}
-
-static Vec3 light_place(const SceneView *view, const Light *light)
-{
-    if (light_kind(light) != LIGHT_AREA)
-        return light_detail(view, light)->position;
-    Box box = primitive_box(view, light->primitive);
-    return box_center(&box);
-}
-
-/* Sets the steps, and the radius of point lights, by each light's reach: how far its subpaths go to the last specular
- * surface; from infinity, the extent of those. */
-static void reach_set(PhotonLights *lights)
-{
-    const SceneView *view = &lights->view;
-    const SceneParams *scene = &view->frame->scene;
-    double world = (double)scene->world_radius, least = POINT_STEP_ULPS * (double)FLOAT_EPSILON * world,
-           nearest = world;
-    Vec3 center = smooth_boxes_center(&lights->aims);
-    for (uint i = 0; i < scene->light_count; ++i) {
-        const Light *light = &view->lights[i];
-        double reach = smooth_boxes_radius(&lights->aims);
-        if (!photon_light_is_far(lights, i))
-            reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
-        reach = fmin(reach, world);
-        lights->step[i] = fmax(POINT_STEP * reach, least);
-        if (light_has_position(light_kind(light)))
-            nearest = fmin(nearest, reach);
-    }
-    lights->params.point_radius = (float)(POINT_RADIUS * nearest);
-}
-
-bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
-{
-    const BackendScene packed = scene_backend_view(scene);
-    uint count = packed.frame->scene.light_count;
-    *lights = (PhotonLights){.view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels),
-                             .params.distant_sine = DISTANT_SINE,
-                             .direction_step = DIRECTION_STEP};
-    lights->radius = calloc(count + 1, sizeof *lights->radius);
-    lights->step = calloc(count + 1, sizeof *lights->step);
-    if (!lights->radius || !lights->step)
-        return error_memory(error, count * (sizeof *lights->radius + sizeof *lights->step), "lights");
-    if (!smooth_boxes_init(&lights->aims, scene, &lights->view, error))
-        return false;
-    reach_set(lights);
-    return radii_set(lights, scene->shapes.count, error);
-}
-
-void photon_lights_destroy(PhotonLights *lights)
-{
-    free(lights->radius);
-    free(lights->step);
-    smooth_boxes_destroy(&lights->aims);
-    *lights = (PhotonLights){0};
-}
 
 PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, uint k)
 {
@@ -174,21 +72,33 @@ static bool divide(const double slopes[4], const double places[4], double out[4]
     return determinant > 0.0;
 }
 
-static double far_radius(const PhotonLights *lights, uint light, Vec3 d)
+/* Turns the derivatives into those in the frame of another direction, which is close to the first one: to first order,
+ * slopes and displacements turn as vectors across the direction do. */
+static void record_turn(PhotonRecord *record, Vec3 direction)
 {
-    double pdf = (double)environment_pdf_w(&lights->view, light, vec3_negate(d));
-    return fmin(fmax(sqrt(1.0 / (M_PI * fmax(pdf, 1e-30))), FAR_RADIUS_MIN), FAR_RADIUS_MAX);
+    const Frame from = frame_from_normal(record->direction), to = frame_from_normal(direction);
+    const double turn[4] = {(double)vec3_dot(from.t, to.t), (double)vec3_dot(from.t, to.b),
+                            (double)vec3_dot(from.b, to.t), (double)vec3_dot(from.b, to.b)},
+                 back[4] = {turn[0], turn[2], turn[1], turn[3]};
+    multiply(record->by_place, turn, record->by_place);
+    multiply(back, record->by_place, record->by_place);
+    multiply(back, record->by_light, record->by_light);
+    record->direction = direction;
 }
 
-static double light_radius(const PhotonLights *lights, const PhotonPath *path)
+/* Makes the photon one of the middle of its light, so that the lobes of photons around a place lie upon each other and
+ * need be no wider than the light. */
+static void record_center(PhotonRecord *record, const LightLook *look)
 {
-    const PhotonParams *params = &lights->params;
-    uint kind = light_kind(&lights->view.lights[path->light]);
-    if (kind == LIGHT_AREA)
-        return lights->radius[path->light];
-    if (kind == LIGHT_DISTANT)
-        return (double)params->distant_sine;
-    return light_has_position(kind) ? (double)params->point_radius : far_radius(lights, path->light, path->first);
+    double slopes[2];
+    Vec3 moved = vec3_sub(look->center, record->light_point);
+    const double light_moved[2] = {(double)vec3_dot(moved, record->axes[0]), (double)vec3_dot(moved, record->axes[1])};
+    photon_predict(record, record->point, light_moved, slopes);
+    const Vec3 framed = vec3((float)slopes[0], (float)slopes[1], 1.0f);
+    record_turn(record, vec3_normalize(frame_to_world(frame_from_normal(record->direction), framed)));
+    record->light_point = look->center;
+    for (int i = 0; i < 3; ++i)
+        record->extent[i] = look->covariance[i];
 }
 
 bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
@@ -204,8 +114,7 @@ bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
                              .point = path->point,
                              .direction = vec3_normalize(vec3_negate(path->last)),
                              .light_point = far ? path->first : path->origin,
-                             .axes = {frame.t, frame.b},
-                             .light_radius = light_radius(lights, path)};
+                             .axes = {frame.t, frame.b}};
     for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k) {
         double place[2], slope[2];
         if (!place_across(record->point, record->direction, &neighbours[k], place) ||
@@ -226,7 +135,11 @@ bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
         record->by_light[i] = (slopes[1][i] - across[i]) / step;
         finite = finite && isfinite(record->by_light[i]) && isfinite(record->by_place[i]);
     }
-    return finite;
+    if (!finite)
+        return false;
+    const LightLook look = photon_light_look(lights, path->light, record->light_point, record->axes);
+    record_center(record, &look);
+    return true;
 }
 
 void photon_predict(const PhotonRecord *record, Vec3 p, const double light_moved[2], double slopes[2])

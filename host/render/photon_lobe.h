@@ -3,10 +3,8 @@
 #ifndef TWINLIGHT_RENDER_PHOTON_LOBE_H
 #define TWINLIGHT_RENDER_PHOTON_LOBE_H
 
-#include "layout/scene_view.h"
+#include "render/photon_lights.h"
 #include "render/photon_pass.h"
-#include "scene/scene.h"
-#include "scene/smooth_boxes.h"
 
 /* A photon with its derivatives. Slopes are those of directions in frame_from_normal(direction) (path/photon.h). */
 typedef struct PhotonRecord {
@@ -18,7 +16,7 @@ typedef struct PhotonRecord {
     double by_light[4]; /* slopes per unit of displacement of the light's point along `axes` */
     Vec3 light_point; /* or, for a light at infinity, the direction in which it travels */
     Vec3 axes[2];
-    double light_radius; /* of the light, in the same units */
+    double extent[3]; /* covariance of the light's points along `axes`: xx, xy, yy */
     double spread[3]; /* of the slopes: lower triangular; set by photon_grid_make */
 } PhotonRecord;
 
@@ -26,23 +24,6 @@ typedef struct PhotonRecords {
     PhotonRecord *records;
     uint count;
 } PhotonRecords;
-
-/* What photons need to know of the scene: its lights, and the specular surfaces that they light. */
-typedef struct PhotonLights {
-    SceneView view;
-    SmoothBoxes aims;
-    PhotonParams params; /* the radii of lights of no extent */
-    double *radius; /* of a disc with the area of the light's shape; of light at infinity 0 */
-    double *step; /* between the origins of neighbouring subpaths */
-    double direction_step; /* between their directions */
-} PhotonLights;
-
-/* Call photon_lights_destroy even on failure. */
-bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error);
-void photon_lights_destroy(PhotonLights *lights);
-
-/* At infinity: light arrives in directions that do not change with the place. */
-bool photon_light_is_far(const PhotonLights *lights, uint light);
 
 /* Neighbours of a subpath: two through the same point of the light (or, at infinity, in the same direction), and two
  * through other points (in other directions). */

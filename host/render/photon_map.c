@@ -16,7 +16,7 @@
 
 /* ... while more than this part of the directions that they predict misses the light, and it is so much smaller than
  * with every PHOTONS_GROWTH-th of them: where surfaces are not smooth between photons, more predict hardly better. */
-#define MISSED_ENOUGH 0.02
+#define MISSED_ENOUGH 0.01
 #define MISSED_SHRINKS 0.6
 
 /* A map as large as is allowed of which more than this part misses gets a warning. */

@@ -20,6 +20,7 @@ libtwinlight_host_la_SOURCES += \
 	host/render/opening_search.c host/render/opening_search.h \
 	host/render/openings.c host/render/openings.h \
 	host/render/photon_grid.c host/render/photon_grid.h \
+	host/render/photon_lights.c host/render/photon_lights.h \
 	host/render/photon_lobe.c host/render/photon_lobe.h \
 	host/render/photon_map.c host/render/photon_map.h \
 	host/render/photon_pass.c host/render/photon_pass.h \

@@ -14,11 +14,15 @@
 
 /* A cell of which at least PHOTONS_LEAST photons are in one of the eight cells of the next level is too coarse for a
  * place in that one. Of more than PHOTONS_MOST photons of a cell, evenly spaced ones stand for all. */
-#define PHOTONS_LEAST 8u
-#define PHOTONS_MOST 16u
+#define PHOTONS_LEAST 4u
+#define PHOTONS_MOST 8u
 
 /* Predicted directions this far from the photon's own, in cosines, are not drawn. */
 #define PHOTON_COSINE_MIN 0.05f
+
+/* Lobes are mixed with wider ones: their part, and their width. */
+#define PHOTON_WIDE_PART (1.0f / 32.0f)
+#define PHOTON_WIDE 8.0f
 
 /* The photons of a group for a place: `number` of them, first, first + every, ... */
 typedef struct PhotonSet {
@@ -32,8 +36,9 @@ typedef struct PhotonSets {
 } PhotonSets;
 
 /* The directions that a photon predicts for a place. With (a, b) = (w.t, w.b) / w.n the slopes of w in the frame of the
- * photon's own direction n, z = spread^-1 ((a, b) - centre) has the density 1 / (pi (1 + |z|^2)^2), whose tails bound
- * what directions far from the prediction contribute. */
+ * photon's own direction n, z = spread^-1 ((a, b) - centre) has the density 1 / (pi (1 + |z|^4)^(3/2)), which is even
+ * where the light is, mixed with 1 / (pi (1 + |z|^2)^2) of PHOTON_WIDE times the spread, whose tails bound what
+ * directions far from the prediction contribute. */
 typedef struct PhotonLobe {
     Frame frame;
     float a, b; /* centre */
@@ -166,17 +171,28 @@ SHARED_FUNCTION float photon_lobe_density(const PhotonLobe *lobe, Vec3 w)
         return 0.0f;
     float x = (framed.x / framed.z - lobe->a) / lobe->spread_aa;
     float y = (framed.y / framed.z - lobe->b - lobe->spread_ba * x) / lobe->spread_bb;
-    float tail = 1.0f + (x * x + y * y);
-    float slopes = INV_PI / (tail * tail) / (lobe->spread_aa * lobe->spread_bb);
+    float square = x * x + y * y, narrow = 1.0f + square * square,
+          wide = 1.0f + square * (1.0f / (PHOTON_WIDE * PHOTON_WIDE));
+    float mixed = (1.0f - PHOTON_WIDE_PART) / (narrow * float_sqrt(narrow)) +
+                  PHOTON_WIDE_PART / (PHOTON_WIDE * PHOTON_WIDE) / (wide * wide);
+    float slopes = INV_PI * mixed / (lobe->spread_aa * lobe->spread_bb);
     return slopes / (framed.z * framed.z * framed.z);
 }
 
-/* Draws a direction from the lobe; false if it is too far from the photon's own. */
+/* Draws a direction from the lobe; false if it is too far from the photon's own. v = |z|^2 has the distribution
+ * function v / (1 + v^2)^(1/2) in the narrow part, and in the wide one, v in units of PHOTON_WIDE^2, v / (1 + v); the
+ * squared radius of a point of a disk is uniform. */
 SHARED_FUNCTION bool photon_lobe_sample(const PhotonLobe *lobe, Vec2 u, Vec3 *w)
 {
-    float radius;
-    Vec2 disk = warp_disk_polar(u, &radius);
-    float scale = 1.0f / float_sqrt((1.0f - radius) * (1.0f + radius));
+    float radius, scale;
+    bool wide = u.x < PHOTON_WIDE_PART;
+    float part = wide ? u.x / PHOTON_WIDE_PART : (u.x - PHOTON_WIDE_PART) / (1.0f - PHOTON_WIDE_PART);
+    Vec2 disk = warp_disk_polar(vec2(part, u.y), &radius);
+    float drawn = radius * radius;
+    if (wide)
+        scale = PHOTON_WIDE / float_sqrt((1.0f - radius) * (1.0f + radius));
+    else
+        scale = 1.0f / float_sqrt(float_sqrt((1.0f - drawn) * (1.0f + drawn)));
     float x = disk.x * scale, y = disk.y * scale;
     Vec3 framed = vec3(lobe->a + lobe->spread_aa * x, lobe->b + (lobe->spread_ba * x + lobe->spread_bb * y), 1.0f);
     *w = vec3_normalize(frame_to_world(lobe->frame, framed));

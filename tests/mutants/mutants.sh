@@ -213,6 +213,7 @@ likely() {
     host/pbrt/* | host/scene/media_setup.c) echo test_import ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
+    host/render/photon_lights.c | host/render/photon_lobe.c) echo test_photon_lights test_caustic ;;
     host/render/photon_map.c) echo test_caustic:photons command/test_outputs.sh test_caustic ;;
     shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h | host/render/photon_*.c) echo test_caustic:photons test_caustic ;;
     shared/chain/pool.h) echo test_chain:shown test_partition test_chain_population test_pool test_layers ;;

@@ -388,7 +388,8 @@ START_TEST(test_density)
     }
     const PhotonSets found = {{{0, 1, COUNT}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, 1.0f};
     const Vec3 p = vec3(0.0f, 0.0f, 0.0f), w = vec3(0.0f, 0.0f, 1.0f);
-    const double lobe = 1.0 / (M_PI * (double)(spread * spread));
+    const double wide = (double)PHOTON_WIDE_PART, width = (double)PHOTON_WIDE,
+                 lobe = (1.0 - wide + wide / (width * width)) / (M_PI * (double)(spread * spread));
     const struct {
         uint light;
         double part;
