@@ -24,15 +24,23 @@
 #define PHOTON_WIDE_PART (1.0f / 32.0f)
 #define PHOTON_WIDE 8.0f
 
-/* The photons of a group for a place: `number` of them, first, first + every, ... */
+/* Of the nearest cell beside a place's own that has any, at most so many stand for all, and they are drawn by so many
+ * times as often as those of its own: near a border the photons of one cell may all be on one side of an edge. */
+#define PHOTONS_BESIDE_MOST 4u
+#define PHOTONS_BESIDE_WEIGHT 0.5f
+
+/* Photons of a group in a cell: `number` of them, first, first + every, ... */
 typedef struct PhotonSet {
     uint first, every, number;
+    uint shift; /* the cell has 2^shift finest ones */
 } PhotonSet;
 
-/* Those of all groups. */
+/* Those for a place: for each group two sets, of the cell that it is in and of the one beside that. */
+#define PHOTON_SETS (2u * PHOTON_GROUPS)
+
 typedef struct PhotonSets {
-    PhotonSet sets[PHOTON_GROUPS];
-    float weight; /* sum of the weights of groups that have any; 0: none has */
+    PhotonSet sets[PHOTON_SETS];
+    float weight; /* sum of the weights of sets that have any; 0: none has */
 } PhotonSets;
 
 /* The directions that a photon predicts for a place. With (a, b) = (w.t, w.b) / w.n the slopes of w in the frame of the
@@ -55,10 +63,16 @@ SHARED_FUNCTION uint photon_code_part(uint x)
     return (x | x << 2) & 0x09249249u;
 }
 
+/* p in units of the finest cells. */
+SHARED_FUNCTION Vec3 photon_cell(PhotonParams params, Vec3 p)
+{
+    return vec3_scale(vec3_sub(p, params.origin), params.cells_per_unit);
+}
+
 /* The Morton code of the finest cell that p is in; NONE outside the grid. */
 SHARED_FUNCTION uint photon_code(PhotonParams params, Vec3 p)
 {
-    Vec3 cell = vec3_scale(vec3_sub(p, params.origin), params.cells_per_unit);
+    Vec3 cell = photon_cell(params, p);
     float most = (float)PHOTON_CELLS;
     if (!(cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x < most && cell.y < most && cell.z < most))
         return NONE;
@@ -78,10 +92,20 @@ SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint 
     return first;
 }
 
+/* The photons first ... last - 1, or at most `most` that stand for them. */
+SHARED_FUNCTION PhotonSet photon_set_of(uint first, uint last, uint most, uint shift)
+{
+    PhotonSet set = {first, 1u, 0u, shift};
+    if (first == last)
+        return set;
+    set.every = (last - first + most - 1u) / most;
+    set.number = (last - first + set.every - 1u) / set.every;
+    return set;
+}
+
 /* The photons of a group for a place with the code `code`: those of the finest cell around it that has enough. */
 SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *photons, uint group, uint code)
 {
-    PhotonSet set = {0u, 1u, 0u};
     uint shift = 3u * (PHOTON_LEVELS - params.level[group]);
     uint first = 0u, last = 0u;
     for (; first == last && shift <= 3u * PHOTON_LEVELS; shift += 3u) {
@@ -89,22 +113,58 @@ SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *p
         first = photon_find(photons, params.first[group], params.first[group + 1u], cell);
         last = photon_find(photons, first, params.first[group + 1u], cell + (1u << shift));
     }
-    if (first == last)
-        return set;
-    for (shift -= 3u; shift > 0u;) {
-        shift -= 3u;
-        uint cell = code >> shift << shift;
+    for (shift -= 3u; first != last && shift > 0u; shift -= 3u) {
+        uint cell = code >> (shift - 3u) << (shift - 3u);
         uint inner = photon_find(photons, first, last, cell);
-        uint inner_end = photon_find(photons, inner, last, cell + (1u << shift));
+        uint inner_end = photon_find(photons, inner, last, cell + (1u << (shift - 3u)));
         if (inner_end - inner < PHOTONS_LEAST)
             break;
         first = inner;
         last = inner_end;
     }
-    set.first = first;
-    set.every = (last - first + PHOTONS_MOST - 1u) / PHOTONS_MOST;
-    set.number = (last - first + set.every - 1u) / set.every;
+    return photon_set_of(first, last, PHOTONS_MOST, shift);
+}
+
+/* The photons of a group in a cell of 2^shift finest ones that shares a face with the one that `cell` (photon_cell) is
+ * in: of those that have any, the nearest. */
+SHARED_FUNCTION PhotonSet photon_set_beside(PhotonParams params, __global const uint *photons, uint group, Vec3 cell,
+                                            uint shift)
+{
+    PhotonSet set = photon_set_of(0u, 0u, 1u, shift);
+    float place[3] = {cell.x, cell.y, cell.z}, part[3];
+    uint bits = shift / 3u, size = 1u << bits, corner[3], left = 7u; /* of axes, a bit each */
+    for (uint axis = 0u; axis < 3u; ++axis) {
+        corner[axis] = (uint)place[axis] >> bits << bits;
+        part[axis] = (place[axis] - (float)corner[axis]) / (float)size;
+    }
+    while (set.number == 0u && left != 0u) {
+        uint nearest = 3u;
+        float least = 1.0f;
+        for (uint axis = 0u; axis < 3u; ++axis) {
+            float away = float_min(part[axis], 1.0f - part[axis]);
+            if ((left & 1u << axis) != 0u && away < least) {
+                nearest = axis;
+                least = away;
+            }
+        }
+        left &= ~(1u << nearest);
+        uint own = corner[nearest], beside = part[nearest] < 0.5f ? own - size : own + size;
+        if (beside >= PHOTON_CELLS) /* outside the grid; also below it */
+            continue;
+        corner[nearest] = beside;
+        uint code = photon_code_part(corner[0]) | photon_code_part(corner[1]) << 1 | photon_code_part(corner[2]) << 2;
+        corner[nearest] = own;
+        uint first = photon_find(photons, params.first[group], params.first[group + 1u], code);
+        uint last = photon_find(photons, first, params.first[group + 1u], code + (1u << shift));
+        set = photon_set_of(first, last, PHOTONS_BESIDE_MOST, shift);
+    }
     return set;
+}
+
+/* The weight of a set that has any photons. */
+SHARED_FUNCTION float photon_set_weight(PhotonParams params, uint set)
+{
+    return params.weight[set / 2u] * (set % 2u == 0u ? 1.0f : PHOTONS_BESIDE_WEIGHT);
 }
 
 /* The photons for the place p. */
@@ -114,29 +174,35 @@ SHARED_FUNCTION PhotonSets photon_sets(PhotonParams params, __global const uint 
     uint code = params.count > 0u ? photon_code(params, p) : NONE;
     found.weight = 0.0f;
     for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
-        PhotonSet none = {0u, 1u, 0u};
-        bool any = code != NONE && params.first[group] < params.first[group + 1u];
-        found.sets[group] = any ? photon_set(params, photons, group, code) : none;
-        if (found.sets[group].number > 0u)
-            found.weight += params.weight[group];
+        PhotonSet own = photon_set_of(0u, 0u, 1u, 0u), beside = own;
+        if (code != NONE && params.first[group] < params.first[group + 1u]) {
+            own = photon_set(params, photons, group, code);
+            beside = photon_set_beside(params, photons, group, photon_cell(params, p), own.shift);
+        }
+        found.sets[2u * group] = own;
+        found.sets[2u * group + 1u] = beside;
     }
+    for (uint set = 0u; set < PHOTON_SETS; ++set)
+        if (found.sets[set].number > 0u)
+            found.weight += photon_set_weight(params, set);
     return found;
 }
 
-/* A photon of the sets, of which there is one: its group by weight, in that uniformly. u: uniform in [0, 1). */
+/* A photon of the sets, of which there is one: its set by weight, in that uniformly. u: uniform in [0, 1). */
 SHARED_FUNCTION uint photon_choose(PhotonParams params, const PhotonSets *found, float u)
 {
     uint chosen = 0u;
     u *= found->weight;
-    for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
-        PhotonSet set = found->sets[group];
+    for (uint i = 0u; i < PHOTON_SETS; ++i) {
+        PhotonSet set = found->sets[i];
+        float weight = photon_set_weight(params, i);
         if (set.number == 0u)
             continue;
-        float part = float_clamp(u / params.weight[group], 0.0f, 1.0f);
+        float part = float_clamp(u / weight, 0.0f, 1.0f);
         uint k = (uint)(part * (float)set.number);
-        if (u >= 0.0f) /* the last group whose share begins at u or below */
+        if (u >= 0.0f) /* the last set whose share begins at u or below */
             chosen = set.first + (k < set.number ? k : set.number - 1u) * set.every;
-        u -= params.weight[group];
+        u -= weight;
     }
     return chosen;
 }
@@ -205,16 +271,16 @@ SHARED_FUNCTION float photon_density(PhotonParams params, __global const uint *p
                                      Vec3 w, uint light)
 {
     float density = 0.0f;
-    for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
-        PhotonSet set = found->sets[group];
+    for (uint i = 0u; i < PHOTON_SETS; ++i) {
+        PhotonSet set = found->sets[i];
         float sum = 0.0f;
-        for (uint i = 0u; i < set.number; ++i) {
-            PhotonLobe lobe = photon_lobe(params, photons, set.first + i * set.every, p);
+        for (uint k = 0u; k < set.number; ++k) {
+            PhotonLobe lobe = photon_lobe(params, photons, set.first + k * set.every, p);
             if (lobe.light == light)
                 sum += photon_lobe_density(&lobe, w);
         }
         if (sum > 0.0f)
-            density += params.weight[group] / found->weight * (sum / (float)set.number);
+            density += photon_set_weight(params, i) / found->weight * (sum / (float)set.number);
     }
     return density;
 }

@@ -386,7 +386,7 @@ START_TEST(test_density)
         photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
         photon[PHOTON_LIGHT] = lights[i];
     }
-    const PhotonSets found = {{{0, 1, COUNT}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, 1.0f};
+    const PhotonSets found = {{{0, 1, COUNT, 0}}, 1.0f};
     const Vec3 p = vec3(0.0f, 0.0f, 0.0f), w = vec3(0.0f, 0.0f, 1.0f);
     const double wide = (double)PHOTON_WIDE_PART, width = (double)PHOTON_WIDE,
                  lobe = (1.0 - wide + wide / (width * width)) / (M_PI * (double)(spread * spread));
@@ -511,6 +511,69 @@ START_TEST(test_grid)
 }
 END_TEST
 
+/* Beside a place's cell, the photons of the nearest cell with any that shares a face with it; both sets are drawn from,
+ * and counted, by their weights. */
+START_TEST(test_beside)
+{
+    enum { SIDE = 64 }; /* photons on a plane z = 0, at the corners of a grid but for a hole */
+    static uint words[SIDE * SIDE * (1 + PHOTON_WORDS)];
+    PhotonParams params = {.level = {4, 1, 1, 1}, .weight = {0.7f}, .cells_per_unit = (float)PHOTON_CELLS};
+    for (int i = 0; i < SIDE * SIDE; ++i) {
+        const float x = (float)(i % SIDE) / (float)SIDE, y = (float)(i >> 6) / (float)SIDE;
+        if (x < 0.25f || x >= 0.3125f || y < 0.25f || y >= 0.3125f)
+            words[params.count++] = photon_code(params, vec3(x, y, 0.0f));
+    }
+    for (int group = 1; group <= (int)PHOTON_GROUPS; ++group)
+        params.first[group] = params.count;
+    qsort(words, params.count, sizeof *words, codes_compare);
+    for (uint i = 0; i < params.count; ++i) {
+        uint *photon = words + params.count + i * PHOTON_WORDS;
+        photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
+        photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(0.1f);
+        photon[PHOTON_LIGHT] = i % 4 == 3 ? 1 : NONE;
+    }
+    /* In cells, of which 32 are a side: place, and the cell beside. Below the plane there is none, and those above it and
+     * in the hole are empty. */
+    static const struct {
+        float place[3];
+        int beside[2];
+    } cases[] = {{{16.1f, 17.5f, 0.30f}, {15, 17}}, {{17.9f, 17.5f, 0.30f}, {18, 17}},
+                 {{17.5f, 17.2f, 0.02f}, {17, 16}}, {{17.4f, 17.7f, 0.95f}, {17, 18}},
+                 {{7.9f, 8.4f, 0.30f}, {7, 7}},     {{0.1f, 17.4f, 0.30f}, {0, 16}},
+                 {{31.9f, 17.6f, 0.30f}, {31, 18}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const float *place = cases[i].place;
+        const Vec3 p = vec3(place[0] / 32.0f, place[1] / 32.0f, place[2] / 32.0f), up = vec3(0.0f, 0.0f, 1.0f);
+        const PhotonSets found = photon_sets(params, words, p);
+        const PhotonSet *own = &found.sets[0], *beside = &found.sets[1];
+        const float x = (float)cases[i].beside[0] / 32.0f, y = (float)cases[i].beside[1] / 32.0f;
+        const uint cell = photon_code(params, vec3(x, y, 0.0f));
+        ck_assert_uint_eq(own->shift, 15);
+        ck_assert_uint_eq(own->number, 4);
+        ck_assert_uint_eq(beside->number, 4);
+        for (uint k = 0; k < own->number; ++k)
+            ck_assert_uint_eq(words[own->first + k * own->every] >> 15, photon_code(params, p) >> 15);
+        for (uint k = 0; k < beside->number; ++k)
+            ck_assert_msg(words[beside->first + k * beside->every] >> 15 == cell >> 15, "case %zu", i);
+        TEST_NEAR(found.weight, 0.7 * (1.0 + (double)PHOTONS_BESIDE_WEIGHT), 1e-6);
+        /* what is drawn has the frequencies that the density has */
+        int drawn[2] = {0}, of_light = 0;
+        double part = 0.0;
+        for (int k = 0; k < 3000; ++k) {
+            const uint photon = photon_choose(params, &found, ((float)k + 0.5f) / 3000.0f);
+            ++drawn[words[photon] >> 15 == cell >> 15];
+            of_light += words[params.count + photon * PHOTON_WORDS + PHOTON_LIGHT] == 1;
+        }
+        TEST_NEAR(drawn[1], 1000.0, 2.0);
+        for (uint light = 0; light < 2; ++light) {
+            double density = (double)photon_density(params, words, &found, p, up, light == 0 ? NONE : 1u);
+            part = light == 0 ? density : density / (part + density);
+        }
+        TEST_NEAR(part, of_light / 3000.0, 1e-3);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("caustic");
@@ -521,6 +584,7 @@ int main(void)
     tcase_add_test(photons, test_lobe);
     tcase_add_test(photons, test_density);
     tcase_add_test(photons, test_grid);
+    tcase_add_test(photons, test_beside);
     tcase_add_test(photons, test_growth);
     suite_add_tcase(suite, photons);
     TCase *search = tcase_create("search");
