@@ -106,17 +106,17 @@ static void lamp_add(const SceneView *view, uint light, uint side, Moments *mome
 static void lamp_end(const Moments *moments, LampExtent *lamp)
 {
     double *c = lamp->covariance;
-    lamp->area = moments->weight;
     lamp->center = moments_end(moments, c);
     double minors = c[0] * c[3] - c[1] * c[1] + c[0] * c[5] - c[2] * c[2] + c[3] * c[5] - c[4] * c[4],
            determinant = c[0] * (c[3] * c[5] - c[4] * c[4]) - c[1] * (c[1] * c[5] - c[4] * c[2]) +
                          c[2] * (c[1] * c[4] - c[3] * c[2]);
     bool flat = !(determinant > FLAT_VARIANCE * pow(fmax(minors, 0.0), 1.5));
-    double seen = flat ? lamp->area : 0.25 * lamp->area, pairs = flat ? 1.0 : 3.0, part = flat ? 1.0 : 0.75;
+    double seen = (flat ? 1.0 : 0.25) * moments->weight, pairs = flat ? 1.0 : 3.0, part = flat ? 1.0 : 0.75;
     for (int k = 0; k < 6; ++k)
         c[k] *= part;
     lamp->radius = sqrt(seen / M_PI);
-    lamp->compact = seen >= COMPACT_FILL * 4.0 * M_PI * part * sqrt(fmax(minors, 0.0) / pairs);
+    /* of a single point, which is all that is known of one lamp among very many, nothing */
+    lamp->compact = minors > 0.0 && seen >= COMPACT_FILL * 4.0 * M_PI * part * sqrt(minors / pairs);
 }
 
 static bool lamps_set(PhotonLights *lights, size_t shape_count, Error *error)

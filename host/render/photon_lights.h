@@ -8,7 +8,6 @@
 
 /* The points of the lamps of a shape. */
 typedef struct LampExtent {
-    double area; /* 0: the shape has no lamps */
     double radius; /* of a disc that shows as much of them as they show on average */
     bool compact; /* they fill the ellipse of their covariance */
     Vec3 center;
