@@ -38,6 +38,10 @@
 #define SPOT_POINTS 32u
 #define SPOT_RADIUS_MAX 0.05
 
+/* Squared distance from a spot's middle up to which directions are its own, in units of its variance: the edge of a disc
+ * is at 4. */
+#define SPOT_REACH 6.0
+
 /* Estimates of a spot's radius, each by the one before. */
 #define SPOT_STEPS 3
 
@@ -141,19 +145,19 @@ static bool lamps_set(PhotonLights *lights, size_t shape_count, Error *error)
 
 /* ---- lights at infinity ------------------------------------------------------------------------------------------ */
 
-/* The radius of a disc of even light that has the same density as the light from d. */
+/* The radius of a disc of even light of which directions have the density pdf per solid angle. */
 static double far_radius(double pdf)
 {
     return fmin(fmax(sqrt(1.0 / (M_PI * fmax(pdf, 1e-30))), FAR_RADIUS_MIN), FAR_RADIUS_MAX);
 }
 
-/* The spot that the direction d, in which light of that radius travels, belongs to; NULL: none. */
+/* The spot that the direction d, in which light travels, belongs to; NULL: none. */
 static const LightSpot *spot_of(const PhotonLights *lights, uint light, Vec3 d)
 {
     for (uint i = 0; i < lights->spot_count; ++i) {
         const LightSpot *spot = &lights->spots[i];
         double away = (double)vec3_length(vec3_sub(d, spot->direction));
-        if (spot->light == light && away * away < 6.0 * spot->variance) /* a disc has 4 times its variance */
+        if (spot->light == light && away * away < SPOT_REACH * spot->variance)
             return spot;
     }
     return NULL;
@@ -176,7 +180,8 @@ static Moments spot_around(const LightSample *samples, uint count, uint from, do
     return moments;
 }
 
-/* Adds the spot that a direction is in, of many that were drawn in proportion to the light, if it fills its disc. */
+/* Adds the spot that a direction is in, of many that were drawn in proportion to the light, if it fills its disc and is
+ * new: the corners of a square are not within SPOT_REACH. */
 static void spot_add(PhotonLights *lights, uint light, const LightSample *samples, uint count, uint from)
 {
     double radius, covariance[6];
@@ -184,7 +189,7 @@ static void spot_add(PhotonLights *lights, uint light, const LightSample *sample
     const Vec3 middle = vec3_normalize(moments_end(&moments, covariance));
     const double variance = 0.5 * (covariance[0] + covariance[3] + covariance[5]);
     if (radius < SPOT_RADIUS_MAX && variance > 0.0 && radius * radius >= COMPACT_FILL * 4.0 * variance &&
-        lights->spot_count < LIGHT_SPOTS)
+        lights->spot_count < LIGHT_SPOTS && !spot_of(lights, light, vec3_negate(middle)))
         lights->spots[lights->spot_count++] = (LightSpot){light, vec3_negate(middle), variance};
 }
 

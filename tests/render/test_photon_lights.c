@@ -157,6 +157,24 @@ START_TEST(test_sun)
 }
 END_TEST
 
+/* A sun of four texels is one spot, whatever its corners are. */
+START_TEST(test_square_sun)
+{
+    char text[512];
+    Scene scene;
+    PhotonLights lights;
+    test_folder_make();
+    suns_write("square.pfm", 0.013, 0.0);
+    snprintf(text, sizeof text, "LightSource \"infinite\" \"string filename\" \"%s\"\n", test_path("square.pfm"));
+    lights_of(text, &scene, &lights);
+    test_folder_remove();
+    ck_assert_uint_eq(lights.spot_count, 1);
+    const Vec3 middle = lights.spots[0].direction;
+    TEST_NEAR(fmax(fmax(fabs((double)middle.x), fabs((double)middle.y)), fabs((double)middle.z)), 1.0, 1e-5);
+    lights_end(&scene, &lights);
+}
+END_TEST
+
 /* ---- what photons predict ---------------------------------------------------------------------------------------- */
 
 /* Follows a subpath by way of the mirror y = 0 to the plane y = 3. */
@@ -170,7 +188,7 @@ static PhotonPath reflected(PhotonPath path)
 }
 
 /* The photon of a lamp's point predicts the direction towards the image of its middle, for places around it, too, and
- * its lobe is as wide as the lamp. */
+ * how far the lamp's points are from that. */
 START_TEST(test_predicted)
 {
     static const char *const SHAPES[] = {
@@ -258,6 +276,7 @@ int main(void)
     TCase *lights = tcase_create("lights");
     tcase_add_loop_test(lights, test_lamp, 0, (int)(sizeof LAMPS / sizeof LAMPS[0]));
     tcase_add_test(lights, test_sun);
+    tcase_add_test(lights, test_square_sun);
     tcase_add_loop_test(lights, test_predicted, 0, 2);
     tcase_add_test(lights, test_spread);
     suite_add_tcase(suite, lights);
