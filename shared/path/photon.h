@@ -138,7 +138,7 @@ SHARED_FUNCTION PhotonSet photon_set_beside(PhotonParams params, __global const 
         part[axis] = (place[axis] - (float)corner[axis]) / (float)size;
     }
     while (set.number == 0u && left != 0u) {
-        uint nearest = 3u;
+        uint nearest = 0u;
         float least = 1.0f;
         for (uint axis = 0u; axis < 3u; ++axis) {
             float away = float_min(part[axis], 1.0f - part[axis]);
