@@ -29,4 +29,5 @@ libtwinlight_host_la_SOURCES += \
 	host/base/temporary_file.c host/base/temporary_file.h \
 	host/base/text_number.c host/base/text_number.h \
 	host/base/text_window.c host/base/text_window.h \
-	host/base/timing.c host/base/timing.h
+	host/base/timing.c host/base/timing.h \
+	host/base/zeros.c host/base/zeros.h

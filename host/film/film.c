@@ -1,5 +1,6 @@
 #include "film/film.h"
 
+#include "base/zeros.h"
 #include "camera/film_spread.h"
 
 #include <math.h>
@@ -35,8 +36,8 @@ bool film_init(Film *film, int width, int height, const int crop[4], Error *erro
         return error_fix(error, "choose a smaller --resolution");
     }
     size_t pixels = film_pixels(film);
-    film->sums = calloc(pixels * 3, sizeof *film->sums);
-    film->counts = calloc(pixels, sizeof *film->counts);
+    film->sums = zeros_alloc(pixels * 3, sizeof *film->sums);
+    film->counts = zeros_alloc(pixels, sizeof *film->counts);
     if (film->sums && film->counts)
         return true;
     film_destroy(film);
@@ -48,7 +49,7 @@ static bool sums_reserve(const Film *film, int64_t **sums, const char *what, Err
 {
     size_t bytes = film_pixels(film) * 3 * sizeof **sums;
     if (!*sums)
-        *sums = calloc(1, bytes);
+        *sums = zeros_alloc(1, bytes);
     return *sums || error_memory(error, bytes, what);
 }
 
@@ -73,7 +74,7 @@ bool film_depths_reserve(Film *film, uint last, Error *error)
     film->depth_kinds = film->rare_sums ? FILM_KIND_RARE + 1 : 1;
     film->depth_last = last;
     size_t words = film_depth_words((uint)film_pixels(film), film->depth_kinds, last);
-    film->depth_sums = calloc(words, sizeof *film->depth_sums);
+    film->depth_sums = zeros_alloc(words, sizeof *film->depth_sums);
     return film->depth_sums || error_memory(error, words * sizeof *film->depth_sums, "the films of every depth");
 }
 

@@ -1,5 +1,6 @@
 #include "mmlt/combined_image.h"
 
+#include "base/zeros.h"
 #include "camera/film_sum.h"
 
 #include <stdlib.h>
@@ -14,9 +15,10 @@ static size_t depths_before(const Film *film, uint segments)
 bool combined_image_init(CombinedImage *image, const Film *film, Error *error)
 {
     size_t values = 3 * film_pixels(film), depths = film->depth_sums ? depths_before(film, film->depth_last + 1) : 0;
-    *image = (CombinedImage){.light = malloc(values * sizeof *image->light), .values = values, .depth_values = depths};
+    *image =
+        (CombinedImage){.light = zeros_alloc(values, sizeof *image->light), .values = values, .depth_values = depths};
     if (depths > 0)
-        image->depths = malloc(depths * sizeof *image->depths);
+        image->depths = zeros_alloc(depths, sizeof *image->depths);
     return (image->light && (depths == 0 || image->depths)) ||
            error_memory(error, (values + depths) * sizeof(float), "a generation's picture");
 }
@@ -24,7 +26,7 @@ bool combined_image_init(CombinedImage *image, const Film *film, Error *error)
 bool paths_change_init(PathsChange *change, size_t values, Error *error)
 {
     paths_change_forget(change);
-    change->values = calloc(values, sizeof *change->values);
+    change->values = zeros_alloc(values, sizeof *change->values);
     return change->values || error_memory(error, values * sizeof *change->values, "the picture by path tracing");
 }
 

@@ -1,9 +1,12 @@
 #include "film/test_film.h"
 
+#include "base/zeros.h"
 #include "camera/film_spread.h"
 
+#include <malloc.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* 0.3 added 2^30 times: in float32 the sum stops at 8,388,608. Merging with a copy doubles both sum and count. */
@@ -388,6 +391,29 @@ START_TEST(test_order_of_full_sums)
 }
 END_TEST
 
+/* The allocator's memory has been used before (mallopt: it is not returned to the system): large arrays are zeros
+ * nevertheless, and sizes that overflow have none. */
+START_TEST(test_zeros)
+{
+    const size_t count = (size_t)5 << 20, sizes[] = {count, 1000};
+    ck_assert(mallopt(M_MMAP_THRESHOLD, 32 << 20) && mallopt(M_TRIM_THRESHOLD, 64 << 20));
+    for (int round = 0; round < 8; ++round) {
+        size_t words = sizes[round % 2] / sizeof(uint32_t), others = 0;
+        uint32_t *zeros = zeros_alloc(words, sizeof *zeros);
+        volatile uint32_t *values = zeros; /* are written, although nothing reads them before they are freed */
+        ck_assert_ptr_nonnull(zeros);
+        for (size_t i = 0; i < words; ++i) {
+            others += values[i] != 0;
+            values[i] = UINT32_MAX;
+        }
+        ck_assert_uint_eq(others, 0);
+        free(zeros);
+    }
+    ck_assert_ptr_null(zeros_alloc(SIZE_MAX / 4, 5));
+    ck_assert_ptr_null(zeros_alloc(1, SIZE_MAX));
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("film");
@@ -403,6 +429,7 @@ int main(void)
     tcase_add_test(tcase, test_sums_of_a_device);
     tcase_add_test(tcase, test_full);
     tcase_add_test(tcase, test_order_of_full_sums);
+    tcase_add_test(tcase, test_zeros);
     suite_add_tcase(suite, tcase);
     suite_add_tcase(suite, film_units_tcase());
     suite_add_tcase(suite, film_complete_tcase());
