@@ -207,6 +207,7 @@ tests_test_bidirectional_SOURCES = tests/path/test_bidirectional.c \
 tests_test_combination_SOURCES = tests/mmlt/test_combination.c \
 	tests/mmlt/test_combination_bidirectional.c \
 	tests/mmlt/test_combination_estimators.c \
+	tests/mmlt/test_combination_few.c \
 	tests/mmlt/test_combination_known.c \
 	tests/mmlt/test_combination_model.c \
 	tests/mmlt/test_combination_rare.c

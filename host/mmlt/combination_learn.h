@@ -72,6 +72,7 @@ typedef struct Combination {
     double earlier_samples[2], exponents[2];
     int threads; /* that make sums over images */
     bool ready[SERIES_COUNT]; /* the series' variances are known */
+    double deviations[SERIES_COUNT]; /* standard errors that tell light from noise (MISSING_PROBABILITY) */
     /* Variance of the chains' light in a tile over the sum of those in its patches: 1 for errors that are independent
      * (or not known), TILE_PATCHES for errors that are alike. */
     double chains_correlation;

@@ -2,6 +2,7 @@
 #include "mmlt/combination_variances.h"
 
 #include "base/sample_statistics.h"
+#include "base/student.h"
 #include "mmlt/combination_rare.h"
 #include "mmlt/combination_stratified.h"
 #include "mmlt/tuning.h"
@@ -15,25 +16,32 @@ static double freedom_of(const Combination *combination, int s)
     return fmax((double)pixel_series_pictures(&combination->light[s], 0) - 1.0, 0.0);
 }
 
-/* Lower confidence bound of a tile's light: its mean less `deviations` standard errors. 0 until the series' variance is
- * known. */
-static double light_bound(const Combination *combination, int s, size_t tile, double deviations)
+/* How many standard errors are needed to tell light from noise that few pictures state. */
+static void deviations_set(Combination *combination)
+{
+    for (int s = 0; s < SERIES_COUNT; ++s) {
+        double freedom = freedom_of(combination, s);
+        combination->deviations[s] = freedom >= 1.0 ? student_threshold(MISSING_PROBABILITY, freedom) : 0.0;
+    }
+}
+
+/* A tile's light, or the lower confidence bound of it. 0 until the series' variance is known. */
+static double tile_light(const Combination *combination, int s, size_t tile, bool bound)
 {
     if (!(freedom_of(combination, s) >= 1.0))
         return 0.0;
-    double error = sqrt(pixel_series_variance(&combination->sums[s], tile));
-    return (double)combination->sums[s].mean[tile] - deviations * error;
+    double error = bound ? sqrt(pixel_series_variance(&combination->sums[s], tile)) : 0.0;
+    return (double)combination->sums[s].mean[tile] - combination->deviations[s] * error;
 }
 
-/* The largest such bound over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus
- * excess. */
-static double light_bound_best(const Combination *combination, size_t tile, double deviations)
+/* The largest over the estimates of the tile's whole light: path tracing plus rare, chains, or pool plus excess. */
+static double tile_light_best(const Combination *combination, size_t tile, bool bound)
 {
-    double chains = light_bound(combination, ESTIMATOR_CHAINS, tile, deviations),
-           pool = light_bound(combination, ESTIMATOR_POOL, tile, deviations);
-    return fmax(light_bound(combination, ESTIMATOR_PATHS, tile, deviations) +
-                    light_bound(combination, SERIES_RARE, tile, deviations),
-                fmax(chains, pool) + light_bound(combination, SERIES_EXCESS, tile, deviations));
+    double chains = tile_light(combination, ESTIMATOR_CHAINS, tile, bound),
+           pool = tile_light(combination, ESTIMATOR_POOL, tile, bound);
+    return fmax(tile_light(combination, ESTIMATOR_PATHS, tile, bound) +
+                    tile_light(combination, SERIES_RARE, tile, bound),
+                fmax(chains, pool) + tile_light(combination, SERIES_EXCESS, tile, bound));
 }
 
 /* The part of a tile's pixels that a patch has. */
@@ -63,7 +71,7 @@ static void row_light(void *context, size_t row)
         combination->known[combination_tile_of_patch(combination, i)].light +=
             fabs((double)combination->direct.mean[i]);
     for (size_t i = tiles.first; i < tiles.end; ++i) {
-        combination->known[i].indirect = light_bound_best(combination, i, 0.0);
+        combination->known[i].indirect = tile_light_best(combination, i, false);
         combination->known[i].light += combination->known[i].indirect;
     }
 }
@@ -150,15 +158,14 @@ static double ratio_median(const Combination *combination, int s, double *ratios
  * its samples or less: adds the variance of one such event. */
 static double missing_spread(const Combination *combination, int s, size_t tile)
 {
-    const double deviations = MISSING_DEVIATIONS;
     const PixelSeries *sums = combination->sums;
     double other, own = (double)sums[s].mean[tile];
     if (s == ESTIMATOR_CHAINS || s == ESTIMATOR_POOL) {
-        other = light_bound(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, deviations);
+        other = tile_light(combination, s == ESTIMATOR_CHAINS ? ESTIMATOR_POOL : ESTIMATOR_CHAINS, tile, true);
     } else if (s == SERIES_PATHS_RARE) {
-        other = light_bound(combination, SERIES_RARE, tile, deviations);
+        other = tile_light(combination, SERIES_RARE, tile, true);
     } else {
-        other = light_bound_best(combination, tile, deviations);
+        other = tile_light_best(combination, tile, true);
         if (s == SERIES_EXCESS)
             own += fmax((double)sums[ESTIMATOR_CHAINS].mean[tile], (double)sums[ESTIMATOR_POOL].mean[tile]);
         else if (s == ESTIMATOR_PATHS)
@@ -233,15 +240,22 @@ static double chains_ratio(const Combination *combination, int s)
     return shape > 0.0 ? spread / shape : 0.0;
 }
 
-/* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Excess and
- * rare light are few bright paths: where chains rarely come, most tiles have not met them and state too small a
- * variance, and the median of all is as small. */
+/* So many samples of a tile tell as much of the series' variance there as all tiles together do; 0: any. Excess and rare
+ * light are few bright paths, so that chains' own light counts like them. */
+static double samples_known(int s)
+{
+    if (s == ESTIMATOR_POOL)
+        return POOL_KNOWN;
+    return s == ESTIMATOR_CHAINS || s == SERIES_EXCESS || s == SERIES_RARE ? VISITS_KNOWN * VISIT_STEPS : 0.0;
+}
+
+/* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Where few
+ * samples come to a tile, most tiles have not met the bright paths and state too small a variance, and the median of all
+ * is as small. */
 static double mean_weight(const Combination *combination, int s, double known)
 {
-    if (s != SERIES_EXCESS && s != SERIES_RARE)
-        return 0.0;
-    double steps = pixel_series_weight(&combination->sums[s], 0) / (double)combination_tile_count(combination);
-    return steps > 0.0 ? known * VISITS_KNOWN * VISIT_STEPS / steps : 0.0;
+    double samples = pixel_series_weight(&combination->sums[s], 0) / (double)combination_tile_count(combination);
+    return samples > 0.0 ? known * samples_known(s) / samples : 0.0;
 }
 
 /* Moves the variances of all tiles toward what is usual, and adds that of missing light. */
@@ -285,6 +299,7 @@ static void persistence_apply(Combination *combination, const Combination *other
 
 void combination_variances_update(Combination *combination, const Combination *other)
 {
+    deviations_set(combination);
     tiles_sum(combination);
     persistence_apply(combination, other);
     stratification_apply(combination, other);

@@ -122,11 +122,12 @@
  * bright path is found. */
 #define PRIOR_GENERATIONS 2.0
 
-/* About how many steps of a chain stay near one tile, and how many such visits tell as much of the variance of a tile's
- * excess and rare light as all tiles together do: with fewer, most tiles have not met the bright paths;
+/* About how many steps of a chain stay near one tile, and how many such visits, or samples of pools, tell as much of the
+ * variance of a tile's light as all tiles together do: with fewer, most tiles have not met the bright paths;
  * docs/TUNING.md. */
 #define VISIT_STEPS 64.0
 #define VISITS_KNOWN 1.0
+#define POOL_KNOWN 16.0
 
 /* The chains' variance of rare light counts this many times against path tracing's: it is learnt from few visits, and
  * two replicas' estimates of it differ by a factor of two or three. More shows fireflies of path tracing, less shows
@@ -150,9 +151,10 @@
  * tracing counts as finding too little; docs/TUNING.md. */
 #define RARE_KNOWN_PART 0.05
 
-/* One estimator must exceed another by this many standard errors before the difference counts as light that the other
- * misses. A higher value trusts path tracing for too long, a lower one takes noise for light; docs/TUNING.md. */
-#define MISSING_DEVIATIONS 2.0
+/* One estimator must exceed another by so many standard errors that noise does so, either way, with this probability
+ * (Student's t): then the difference counts as light that the other misses. A lower value trusts path tracing for too
+ * long, a higher one takes noise for light; docs/TUNING.md. */
+#define MISSING_PROBABILITY 0.0455
 
 /* A patch's luminance is clamped to this many times its tile's mean: it may be a firefly, whose variance would count
  * little if its luminance counted in full; docs/TUNING.md. */
@@ -178,15 +180,17 @@
 
 /* Path tracing alone, with the rare light that it finds itself, goes on for some generations if it has at most this
  * many times the error of the best division of work, which takes longer; docs/TUNING.md. */
-#define ALONE_ERROR 1.15
+#define ALONE_ERROR 1.5
 
 /* Its work then, in units of that of the generations between, which look for what it does not find. */
 #define ALONE_WORK 4.0
 
-/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if so many
- * generations or fewer tell that light is easy. Its difference from their image is kept until then, which takes 24
- * bytes a pixel; pictures of more pixels than this do without; docs/TUNING.md. */
+/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if one of so
+ * many generations tells that it has at most ALONE_ERROR_FIRST times the error of the best division of work: chains of
+ * those generations are few, and show rare light worse than it does. Its difference from their image is kept until then,
+ * which takes 24 bytes a pixel; pictures of more pixels than this do without; docs/TUNING.md. */
 #define PATHS_REPLACED 3u
+#define ALONE_ERROR_FIRST 3.0
 #define PATHS_KEPT 8u
 #define PATHS_KEPT_PIXELS ((size_t)1 << 20)
 

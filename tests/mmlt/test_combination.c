@@ -56,33 +56,6 @@ START_TEST(test_stratified)
 }
 END_TEST
 
-/* Chains that come to a tile less than once in all generations, and have found excess in only one so far: the others
- * have no less variance (_i 0). With many visits the tile is an exception (_i 1). */
-START_TEST(test_visits_few)
-{
-    Estimators estimators;
-    const double steps = _i == 0 ? 0.01 : 1000.0;
-    estimators_init(&estimators);
-    for (int g = 0; g < 20; ++g) {
-        estimator_set(&estimators, ESTIMATOR_CHAINS, steps, 1.0, 0.0);
-        estimator_set(&estimators, ESTIMATOR_POOL, 1.0, 1.0, 0.01);
-        estimator_set(&estimators, ESTIMATOR_PATHS, 2.0, 1.0, 0.01);
-        for (size_t c = 0; g == 10 && c < 3; ++c)
-            estimators.films[ESTIMATOR_CHAINS].sums[c] += llrint(100.0 * steps * 0x1p30);
-        generation(&estimators);
-    }
-    const CombinationTile *known = estimators.combination.known;
-    double own = known[0].spread[SERIES_EXCESS], elsewhere = known[15].spread[SERIES_EXCESS];
-    printf("%g steps per pixel: variance of excess where chains found some %.3g, elsewhere %.3g\n", steps, own,
-           elsewhere);
-    if (_i == 0)
-        ck_assert_double_gt(elsewhere, own / 64.0);
-    else
-        ck_assert_double_lt(elsewhere, own / 64.0);
-    estimators_destroy(&estimators);
-}
-END_TEST
-
 /* Chains whose error is the same in all pixels of a tile: the variance of the sum over a patch, by which chains are
  * weighted against the pool, is 16 times that of independent pixels. Against path tracing that of the tile counts,
  * which is four times the sum of its patches'. */
@@ -411,7 +384,6 @@ int main(void)
     TCase *tcase = tcase_create("combination");
     tcase_add_test(tcase, test_weights);
     tcase_add_loop_test(tcase, test_stratified, 0, 4);
-    tcase_add_loop_test(tcase, test_visits_few, 0, 2);
     tcase_add_test(tcase, test_correlated);
     tcase_add_loop_test(tcase, test_blind, ESTIMATOR_POOL, ESTIMATOR_COUNT);
     tcase_add_loop_test(tcase, test_absent, 0, 6);
@@ -423,6 +395,7 @@ int main(void)
     tcase_add_test(tcase, test_importance);
     tcase_add_loop_test(tcase, test_visits, 0, 2);
     suite_add_tcase(suite, tcase);
+    suite_add_tcase(suite, combination_few_tests());
     suite_add_tcase(suite, combination_rare_tests());
     suite_add_tcase(suite, combination_known_tests());
     suite_add_tcase(suite, combination_bidirectional_tests());

@@ -10,7 +10,9 @@
  * the teacher's weights, and lets the learner learn from it. The chains' film becomes the combination. */
 void films_combine(Combination *learner, Combination *teacher, Film *const films[ESTIMATOR_COUNT]);
 
-/* Light above the clamping thresholds; combinations of given variances; bidirectional path tracing. */
+/* What few samples tell; light above the clamping thresholds; combinations of given variances; bidirectional path
+ * tracing. */
+TCase *combination_few_tests(void);
 TCase *combination_rare_tests(void);
 TCase *combination_known_tests(void);
 TCase *combination_bidirectional_tests(void);

@@ -84,8 +84,9 @@ END_TEST
 /* Path tracing finds none of the rare light, which is half of all (_i 0 and 4), all of it (1), all but 4 % (2) or
  * all but 1.5 % (3), and states hardly any variance. No tile tells so: the chains' errors there are large. In the whole
  * image they are small (_i 0, 1 and 3), or alike in all tiles (2), so that the 4 % are not significant; and the 1.5 % of
- * the rare light do not matter. In the last case they are so large that not even all of it is significant. Where path
- * tracing misses light, or may miss much, its own has no weight, and it is never alone. */
+ * the rare light do not matter, although some tiles seem to have missed light and rely on chains. In the last case they
+ * are so large that not even all of it is significant. Where path tracing misses light, or may miss much, its own has
+ * no weight, and it is never alone. */
 START_TEST(test_rare_missed)
 {
     static const struct {
@@ -112,7 +113,7 @@ START_TEST(test_rare_missed)
     double weight = estimators.combination.paths_rare, alone = combination_alone_error(&estimators.combination);
     printf("rare light missed, %d: weight of path tracing's own %.3f, alone %.3g times the error\n", _i, weight, alone);
     if (cases[_i].trusted)
-        ck_assert(weight > 0.9 && alone < 2.0);
+        ck_assert(weight > 0.9 && (weight < 0.995) == (cases[_i].found < 1.0) && alone < 2.0);
     else
         ck_assert(weight == 0.0 && alone > DBL_MAX);
     estimators_destroy(&estimators);

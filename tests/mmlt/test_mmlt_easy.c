@@ -95,7 +95,7 @@ START_TEST(test_easy)
     groups_compare(EASY.name, &got, &expected, 4, false);
     double error = groups_square_error(&got, &expected) / groups_square_error(&paths, &expected);
     printf("square error of mmlt, relative to that of path tracing: %.3f\n", error);
-    ck_assert_double_lt(error, 1.33);
+    ck_assert_double_lt(error, 1.17); /* 1.13; 1.21 if the first generations are not path tracing's */
     groups_destroy(&got);
     groups_destroy(&paths);
     groups_destroy(&expected);
