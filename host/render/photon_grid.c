@@ -1,16 +1,14 @@
 #include "render/photon_grid.h"
 
-#include "base/sample_statistics.h"
 #include "path/photon.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Photons on either side of a photon in the order of the grid that its predictions are compared with, and how many of
- * the best comparisons must agree: the others may belong to light that came another way. */
+/* Photons on either side of a photon in the order of the grid that its predictions are compared with. The best two
+ * comparisons must agree: the others may belong to light that came another way. */
 #define COMPARED 8
-#define AGREEING 2
 
 /* The spread of slopes, relative to the standard deviation of the light's points and to the errors of predictions. For
  * an even disc and exact predictions the variance is least with 1.8; docs/CAUSTICS.md. */
@@ -113,8 +111,7 @@ static uint level_choose(const GridEntry *entries, uint count)
 static double prediction_error(const GridEntry *entries, uint count, uint i)
 {
     const PhotonRecord *own = entries[i].record;
-    double errors[2 * COMPARED];
-    int found = 0;
+    double least = HUGE_VAL, second = HUGE_VAL; /* squared errors */
     for (int k = -COMPARED; k <= COMPARED; ++k) {
         if (k == 0 || (int64_t)i + k < 0 || (int64_t)i + k >= (int64_t)count)
             continue;
@@ -126,12 +123,12 @@ static double prediction_error(const GridEntry *entries, uint count, uint i)
             !photon_slopes(own->direction, other->direction, slopes))
             continue;
         photon_predict(own, other->point, light_moved, predicted);
-        errors[found++] = hypot(slopes[0] - predicted[0], slopes[1] - predicted[1]);
+        const double a = slopes[0] - predicted[0], b = slopes[1] - predicted[1], square = a * a + b * b;
+        second = fmin(second, fmax(least, square));
+        least = fmin(least, square);
     }
-    if (found == 0)
-        return 1.0;
-    sample_sort(errors, (size_t)found);
-    return errors[found < AGREEING ? found - 1 : AGREEING - 1];
+    const double agreed = second < HUGE_VAL ? second : least;
+    return agreed < HUGE_VAL ? sqrt(agreed) : 1.0;
 }
 
 /* Covariance of the slopes that show the light's points: by_light extent by_light^T; xx, xy, yy. */
@@ -235,6 +232,38 @@ static void groups_set(const GridEntry *entries, PhotonParams *params)
     }
 }
 
+/* Where the directories of the groups that have photons are: of the finest cells with which they take no more words than
+ * there are photons. Returns the words of all. */
+static size_t directories_place(PhotonParams *params)
+{
+    size_t groups = 0, words = 0;
+    for (uint g = 0; g < PHOTON_GROUPS; ++g)
+        groups += params->first[g] < params->first[g + 1];
+    while (params->directory_level < PHOTON_LEVELS &&
+           groups * (((size_t)8 << 3u * params->directory_level) + 1) <= params->count)
+        ++params->directory_level;
+    for (uint g = 0; g < PHOTON_GROUPS && params->directory_level > 0; ++g) {
+        params->directory[g] = (uint)((size_t)params->count * (1 + PHOTON_WORDS) + words);
+        if (params->first[g] < params->first[g + 1])
+            words += ((size_t)1 << 3u * params->directory_level) + 1;
+    }
+    return words;
+}
+
+static void directories_fill(const PhotonParams *params, uint *words)
+{
+    const uint shift = 3u * (PHOTON_LEVELS - params->directory_level), cells = 1u << 3u * params->directory_level;
+    for (uint g = 0; g < PHOTON_GROUPS && params->directory_level > 0; ++g) {
+        const uint first = params->first[g], end = params->first[g + 1];
+        uint photon = first;
+        for (uint cell = 0; first < end && cell <= cells; ++cell) {
+            while (photon < end && words[photon] >> shift < cell)
+                ++photon;
+            words[params->directory[g] + cell] = photon;
+        }
+    }
+}
+
 /* Entries of every `every`-th record in the order of the grid, with spreads; NULL: no memory. Sets the grid's place. */
 static GridEntry *entries_make(PhotonRecords *records, uint every, PhotonParams *params, uint *count, double *missed,
                                Error *error)
@@ -274,16 +303,20 @@ bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, Photon
     if (!entries)
         return false;
     count = entries_keep(entries, count);
-    size_t bytes = (size_t)count * (1 + PHOTON_WORDS) * sizeof *map->words;
-    map->words = count > 0 ? malloc(bytes) : NULL;
+    map->params.count = count;
+    if (count == 0) {
+        free(entries);
+        *map = (PhotonMap){0};
+        return true;
+    }
+    groups_set(entries, &map->params);
+    map->word_count = (size_t)count * (1 + PHOTON_WORDS) + directories_place(&map->params);
+    size_t bytes = map->word_count * sizeof *map->words;
+    map->words = malloc(bytes);
     if (map->words) {
-        map->params.count = count;
-        map->word_count = bytes / sizeof *map->words;
-        groups_set(entries, &map->params);
         words_fill(entries, count, map->words);
+        directories_fill(&map->params, map->words);
     }
     free(entries);
-    if (count == 0)
-        *map = (PhotonMap){0};
-    return count == 0 || map->words || error_memory(error, bytes, "photons");
+    return map->words || error_memory(error, bytes, "photons");
 }

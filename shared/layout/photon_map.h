@@ -1,5 +1,7 @@
 /* The layout of the map of caustic photons (path/photon.h): BUFFER_PHOTONS holds the codes of all, sorted within each
- * group, then PHOTON_WORDS words of each. */
+ * group, then PHOTON_WORDS words of each, then a directory of each group that has any: for every cell of
+ * PhotonParams.directory_level, in the order of codes, the first photon of the group that is in that cell or behind it,
+ * and last the end of the group. */
 #ifndef TWINLIGHT_LAYOUT_PHOTON_MAP_H
 #define TWINLIGHT_LAYOUT_PHOTON_MAP_H
 
@@ -28,6 +30,8 @@ typedef struct PhotonParams {
     uint everywhere; /* 1: receivers where light subpaths could be connected draw, too (path/caustic_rest.h) */
     uint first[PHOTON_GROUPS + 1u]; /* photon of each group, and behind the last */
     uint level[PHOTON_GROUPS]; /* at which the cells of a group hold some photons each */
+    uint directory_level; /* 0: there are no directories */
+    uint directory[PHOTON_GROUPS]; /* where that of each group begins, in words */
     float weight[PHOTON_GROUPS]; /* probability of drawing by the group, beside those that have photons at a place */
     Vec3 origin; /* corner of the grid */
     float cells_per_unit; /* of the finest level */

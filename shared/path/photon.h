@@ -4,7 +4,7 @@
  * A photon knows how the direction towards its light changes with the place, the light's point kept, and with the
  * light's point, the place kept, so that it predicts the directions that show the light from places nearby. The
  * photons are sorted by the Morton code of their cell (Morton 1966) in a grid of PHOTON_CELLS cells per side; a cell of
- * a coarser level is a contiguous range of them. The host makes them before a rendering (host/render/photon_map.c). */
+ * a coarser level is a contiguous range of them, which directories shorten the search for. The host makes them before a rendering (host/render/photon_map.c). */
 #ifndef TWINLIGHT_PATH_PHOTON_H
 #define TWINLIGHT_PATH_PHOTON_H
 
@@ -92,6 +92,26 @@ SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint 
     return first;
 }
 
+/* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
+SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, uint cell,
+                                      uint shift, uint *first, uint *last)
+{
+    uint begin = params.first[group], end = params.first[group + 1u], next = cell + (1u << shift);
+    if (params.directory_level > 0u) {
+        uint entry_shift = 3u * (PHOTON_LEVELS - params.directory_level);
+        __global const uint *directory = photons + params.directory[group];
+        begin = directory[cell >> entry_shift];
+        end = directory[((next - 1u) >> entry_shift) + 1u];
+        if (shift >= entry_shift) {
+            *first = begin;
+            *last = end;
+            return;
+        }
+    }
+    *first = photon_find(photons, begin, end, cell);
+    *last = photon_find(photons, *first, end, next);
+}
+
 /* The photons first ... last - 1, or at most `most` that stand for them. */
 SHARED_FUNCTION PhotonSet photon_set_of(uint first, uint last, uint most, uint shift)
 {
@@ -110,8 +130,7 @@ SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *p
     uint first = 0u, last = 0u;
     for (; first == last && shift <= 3u * PHOTON_LEVELS; shift += 3u) {
         uint cell = code >> shift << shift;
-        first = photon_find(photons, params.first[group], params.first[group + 1u], cell);
-        last = photon_find(photons, first, params.first[group + 1u], cell + (1u << shift));
+        photon_cell_find(params, photons, group, cell, shift, &first, &last);
     }
     for (shift -= 3u; first != last && shift > 0u; shift -= 3u) {
         uint cell = code >> (shift - 3u) << (shift - 3u);
@@ -154,8 +173,8 @@ SHARED_FUNCTION PhotonSet photon_set_beside(PhotonParams params, __global const 
         corner[nearest] = beside;
         uint code = photon_code_part(corner[0]) | photon_code_part(corner[1]) << 1 | photon_code_part(corner[2]) << 2;
         corner[nearest] = own;
-        uint first = photon_find(photons, params.first[group], params.first[group + 1u], code);
-        uint last = photon_find(photons, first, params.first[group + 1u], code + (1u << shift));
+        uint first, last;
+        photon_cell_find(params, photons, group, code, shift, &first, &last);
         set = photon_set_of(first, last, PHOTONS_BESIDE_MOST, shift);
     }
     return set;

@@ -6,6 +6,7 @@
 #include "support/test_util.h"
 
 #include "math/warp.h"
+#include "path/photon.h"
 #include "render/photon_grid.h"
 #include "render/photon_map.h"
 
@@ -270,6 +271,78 @@ START_TEST(test_spread)
 }
 END_TEST
 
+/* Two photons that agree by chance are no evidence: of three, two of the same direction, the error is that of the third,
+ * whose slope differs. One alone has nothing to agree with. */
+START_TEST(test_agreement)
+{
+    const Vec3 up = vec3(0.0f, 0.0f, 1.0f), aside = vec3_normalize(vec3(0.1f, 0.0f, 1.0f));
+    PhotonRecord each[3];
+    PhotonRecords records = {each, 3};
+    const PhotonLights lights = {0};
+    PhotonMap map = {0};
+    Error error = {0};
+    double missed;
+    for (int i = 0; i < 3; ++i)
+        each[i] = (PhotonRecord){.number = (uint)i,
+                                 .light = 0,
+                                 .vertices = 1,
+                                 .direction = i == 2 ? aside : up,
+                                 .axes = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}}};
+    ck_assert_msg(photon_grid_make(&records, &lights, &map, &missed, &error), "%s", error.message);
+    for (int i = 0; i < 3; ++i)
+        TEST_NEAR(each[i].spread[0], 0.1, 1e-3);
+    photon_map_destroy(&map);
+    records.count = 1;
+    ck_assert_msg(photon_grid_make(&records, &lights, &map, &missed, &error), "%s", error.message);
+    TEST_NEAR(each[0].spread[0], 1.0, 1e-6);
+    photon_map_destroy(&map);
+}
+END_TEST
+
+/* Directories find the photons of cells of any level that a search of the whole group finds, of two kinds of paths, in
+ * no more words than there are photons. */
+START_TEST(test_directories)
+{
+    enum { COUNT = 5000 };
+    static PhotonRecord each[COUNT];
+    PhotonRecords records = {each, COUNT};
+    const PhotonLights lights = {0};
+    PhotonMap map = {0};
+    Error error = {0};
+    double missed;
+    unsigned state = 3;
+    for (int i = 0; i < COUNT; ++i) {
+        const double x = test_random_unit(&state), y = test_random_unit(&state), z = test_random_unit(&state);
+        each[i] = (PhotonRecord){.number = (uint)i,
+                                 .light = (uint)i % 3, /* of lights without extent all lobes are kept */
+                                 .vertices = 1,
+                                 .point = vec3((float)(x * x), (float)y, (float)(0.1 * z * z)),
+                                 .direction = vec3(0.0f, 0.0f, 1.0f),
+                                 .axes = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}}};
+    }
+    ck_assert_msg(photon_grid_make(&records, &lights, &map, &missed, &error), "%s", error.message);
+    PhotonParams plain = map.params;
+    plain.directory_level = 0;
+    ck_assert_uint_gt(map.params.directory_level, 1);
+    ck_assert_uint_le(map.word_count, (2 + PHOTON_WORDS) * (size_t)COUNT);
+    ck_assert_uint_eq(map.params.first[3], COUNT);
+    int occupied = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const uint group = (uint)i % 3, shift = 3 * ((uint)i / 3 % (PHOTON_LEVELS + 1)),
+                   near = map.words[(size_t)COUNT * (uint)i / 3000],
+                   code = i % 2 == 0 ? near : near ^ 1u << (uint)i % 30;
+        uint first, last, expected_first, expected_last;
+        photon_cell_find(map.params, map.words, group, code >> shift << shift, shift, &first, &last);
+        photon_cell_find(plain, map.words, group, code >> shift << shift, shift, &expected_first, &expected_last);
+        ck_assert_uint_eq(last - first, expected_last - expected_first);
+        ck_assert(first == expected_first || first == last);
+        occupied += first < last;
+    }
+    ck_assert_int_gt(occupied, 1000);
+    photon_map_destroy(&map);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("photon lights");
@@ -279,6 +352,8 @@ int main(void)
     tcase_add_test(lights, test_square_sun);
     tcase_add_loop_test(lights, test_predicted, 0, 2);
     tcase_add_test(lights, test_spread);
+    tcase_add_test(lights, test_agreement);
+    tcase_add_test(lights, test_directories);
     suite_add_tcase(suite, lights);
     return test_run(suite);
 }
