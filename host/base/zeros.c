@@ -10,7 +10,7 @@
 
 void *zeros_alloc(size_t count, size_t size)
 {
-    if (size > 0 && count > (SIZE_MAX - LARGE_PAGE) / size)
+    if (count == 0 || size == 0 || count > (SIZE_MAX - LARGE_PAGE) / size)
         return NULL;
     size_t bytes = count * size, whole = (bytes + LARGE_PAGE - 1) / LARGE_PAGE * LARGE_PAGE;
     if (bytes < LARGE_PAGE)
