@@ -240,8 +240,8 @@ static double chains_ratio(const Combination *combination, int s)
     return shape > 0.0 ? spread / shape : 0.0;
 }
 
-/* So many samples of a tile tell as much of the series' variance there as all tiles together do; 0: any. Excess and rare
- * light are few bright paths, so that chains' own light counts like them. */
+/* So many samples of a tile tell as much of the series' variance there as all tiles together do; 0: any. Chains' own
+ * light counts like their excess and rare light, which are few bright paths. */
 static double samples_known(int s)
 {
     if (s == ESTIMATOR_POOL)
@@ -250,8 +250,8 @@ static double samples_known(int s)
 }
 
 /* Weight of that mean in a tile's variance, in generations, if the series has `known` degrees of freedom. Where few
- * samples come to a tile, most tiles have not met the bright paths and state too small a variance, and the median of all
- * is as small. */
+ * samples come to a tile, most tiles have not met the bright paths and state too small a variance, and the median of
+ * all is as small. */
 static double mean_weight(const Combination *combination, int s, double known)
 {
     double samples = pixel_series_weight(&combination->sums[s], 0) / (double)combination_tile_count(combination);

@@ -239,8 +239,9 @@ static bool films_combine(Mmlt *mmlt)
 }
 
 /* Where the generation tells that light is easy enough, path tracing alone is shown in the first generations of the
- * other replica, whose weights were not those of known variances. What is shown must not be chosen by its own errors: light
- * that it has missed would make it look good. learnt: otherwise what is known comes from the other replica itself. */
+ * other replica, whose weights were not those of known variances. What is shown must not be chosen by its own
+ * errors: light that it has missed would make it look good. learnt: otherwise what is known comes from the other
+ * replica itself. */
 static void first_paths_show(Mmlt *mmlt, bool learnt)
 {
     PathsChange *change = &mmlt->changes[mmlt->generation.other];

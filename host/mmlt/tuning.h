@@ -104,8 +104,8 @@
 #define BIDIRECTIONAL_FIRST 0.75
 
 /* Elsewhere a trial tells its variance, unless light is so easy that path tracing may go on alone: after the first
- * PATHS_FORCED generations this part of the work so far, at most TRIAL_SAMPLES of a pixel, in each generation until both
- * replicas know it. */
+ * PATHS_FORCED generations this part of the work so far, at most TRIAL_SAMPLES of a pixel, in each generation until
+ * both replicas know it. */
 #define TRIAL_PART 0.04
 #define TRIAL_SAMPLES 0.25
 
@@ -122,8 +122,8 @@
  * bright path is found. */
 #define PRIOR_GENERATIONS 2.0
 
-/* About how many steps of a chain stay near one tile, and how many such visits, or samples of pools, tell as much of the
- * variance of a tile's light as all tiles together do: with fewer, most tiles have not met the bright paths;
+/* About how many steps of a chain stay near one tile, and how many such visits, or samples of pools, tell as much of
+ * the variance of a tile's light as all tiles together do: with fewer, most tiles have not met the bright paths;
  * docs/TUNING.md. */
 #define VISIT_STEPS 64.0
 #define VISITS_KNOWN 1.0
@@ -185,10 +185,10 @@
 /* Its work then, in units of that of the generations between, which look for what it does not find. */
 #define ALONE_WORK 4.0
 
-/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if one of so
- * many generations tells that it has at most ALONE_ERROR_FIRST times the error of the best division of work: chains of
- * those generations are few, and show rare light worse than it does. Its difference from their image is kept until then,
- * which takes 24 bytes a pixel; pictures of more pixels than this do without; docs/TUNING.md. */
+/* In the first generations, of which weights are not those of known variances, path tracing alone is shown if one of
+ * so many generations tells that it has at most ALONE_ERROR_FIRST times the error of the best division of work:
+ * chains of those generations are few, and show rare light worse than it does. Its difference from their image is
+ * kept until then, which takes 24 bytes a pixel; pictures of more pixels than this do without; docs/TUNING.md. */
 #define PATHS_REPLACED 3u
 #define ALONE_ERROR_FIRST 3.0
 #define PATHS_KEPT 8u

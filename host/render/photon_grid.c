@@ -232,8 +232,8 @@ static void groups_set(const GridEntry *entries, PhotonParams *params)
     }
 }
 
-/* Where the directories of the groups that have photons are: of the finest cells with which they take no more words than
- * there are photons. Returns the words of all. */
+/* Where the directories of the groups that have photons are: of the finest cells with which they take no more words
+ * than there are photons. Returns the words of all. */
 static size_t directories_place(PhotonParams *params)
 {
     size_t groups = 0, words = 0;

@@ -3,8 +3,9 @@
  *
  * A photon knows how the direction towards its light changes with the place, the light's point kept, and with the
  * light's point, the place kept, so that it predicts the directions that show the light from places nearby. The
- * photons are sorted by the Morton code of their cell (Morton 1966) in a grid of PHOTON_CELLS cells per side; a cell of
- * a coarser level is a contiguous range of them, which directories shorten the search for. The host makes them before a rendering (host/render/photon_map.c). */
+ * photons are sorted by the Morton code of their cell (Morton 1966) in a grid of PHOTON_CELLS cells per side; a cell
+ * of a coarser level is a contiguous range of them, which directories shorten the search for. The host makes them
+ * before a rendering (host/render/photon_map.c). */
 #ifndef TWINLIGHT_PATH_PHOTON_H
 #define TWINLIGHT_PATH_PHOTON_H
 

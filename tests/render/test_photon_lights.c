@@ -271,8 +271,8 @@ START_TEST(test_spread)
 }
 END_TEST
 
-/* Two photons that agree by chance are no evidence: of three, two of the same direction, the error is that of the third,
- * whose slope differs. One alone has nothing to agree with. */
+/* Two photons that agree by chance are no evidence: of three, two of the same direction, the error is that of the
+ * third, whose slope differs. One alone has nothing to agree with. */
 START_TEST(test_agreement)
 {
     const Vec3 up = vec3(0.0f, 0.0f, 1.0f), aside = vec3_normalize(vec3(0.1f, 0.0f, 1.0f));
