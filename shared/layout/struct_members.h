@@ -232,6 +232,8 @@
     MEMBER(PhotonParams, everywhere)                                                                                   \
     MEMBER(PhotonParams, first)                                                                                        \
     MEMBER(PhotonParams, level)                                                                                        \
+    MEMBER(PhotonParams, directory_level)                                                                              \
+    MEMBER(PhotonParams, directory)                                                                                    \
     MEMBER(PhotonParams, weight)                                                                                       \
     MEMBER(PhotonParams, origin)                                                                                       \
     MEMBER(PhotonParams, cells_per_unit)                                                                               \
