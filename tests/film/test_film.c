@@ -396,7 +396,8 @@ END_TEST
 START_TEST(test_zeros)
 {
     const size_t count = (size_t)5 << 20, sizes[] = {count, 1000};
-    ck_assert(mallopt(M_MMAP_THRESHOLD, 32 << 20) && mallopt(M_TRIM_THRESHOLD, 64 << 20));
+    (void)mallopt(M_MMAP_THRESHOLD, 32 << 20); /* a sanitizer's allocator does nothing and returns 0 */
+    (void)mallopt(M_TRIM_THRESHOLD, 64 << 20);
     for (int round = 0; round < 8; ++round) {
         size_t words = sizes[round % 2] / sizeof(uint32_t), others = 0;
         uint32_t *zeros = zeros_alloc(words, sizeof *zeros);
