@@ -299,8 +299,8 @@ START_TEST(test_agreement)
 }
 END_TEST
 
-/* Directories find the photons of cells of any level that a search of the whole group finds, of two kinds of paths, in
- * no more words than there are photons. */
+/* Directories find the photons of cells of any level that a search of the whole group finds, of three lights, in no
+ * more words than there are photons. */
 START_TEST(test_directories)
 {
     enum { COUNT = 5000 };
