@@ -14,6 +14,7 @@ check_PROGRAMS += \
 	tests/test_bsdf \
 	tests/test_analytic \
 	tests/test_archive \
+	tests/test_key_sort \
 	tests/test_light_guide \
 	tests/test_bench \
 	tests/test_combination \
@@ -150,6 +151,7 @@ tests_libfixtures_la_SOURCES = \
 	$(OPENCL_PROBE)
 
 tests_test_archive_SOURCES = tests/base/test_archive.c
+tests_test_key_sort_SOURCES = tests/base/test_key_sort.c
 tests_test_light_guide_SOURCES = tests/light/test_light_guide.c
 tests_test_bench_SOURCES = tests/bench/test_bench.c
 tests_test_caustic_SOURCES = tests/path/test_caustic.c tests/path/test_caustic.h tests/path/test_caustic_photons.c

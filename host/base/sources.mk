@@ -13,6 +13,7 @@ libtwinlight_host_la_SOURCES += \
 	host/base/input_files.c host/base/input_files.h \
 	host/base/interrupt.c host/base/interrupt.h \
 	host/base/json.c host/base/json.h \
+	host/base/key_sort.c host/base/key_sort.h \
 	host/base/largest_values.c host/base/largest_values.h \
 	host/base/log.c host/base/log.h \
 	host/base/matrix.c host/base/matrix.h \

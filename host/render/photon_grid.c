@@ -1,5 +1,7 @@
 #include "render/photon_grid.h"
 
+#include "base/key_sort.h"
+#include "base/parallel.h"
 #include "path/photon.h"
 
 #include <math.h>
@@ -28,24 +30,30 @@
 /* Photons in an occupied cell of the coarsest level that is used, on average. */
 #define CELL_PHOTONS 8u
 
-typedef struct GridEntry {
-    uint group, code, number;
-    PhotonRecord *record;
-} GridEntry;
+/* Photons whose errors a thread finds at a time. */
+#define SPREAD_PART 4096u
+
+/* A record by its group and, within that, its code. */
+typedef KeyedItem GridEntry;
 
 /* Photons of one light without extent (or of all others) and one kind of path. */
 typedef struct GridKind {
     uint light, vertices, lobes, count;
 } GridKind;
 
-static int entry_compare(const void *a, const void *b)
+static uint entry_group(const GridEntry *entry)
 {
-    const GridEntry *x = a, *y = b;
-    if (x->group != y->group)
-        return x->group < y->group ? -1 : 1;
-    if (x->code != y->code)
-        return x->code < y->code ? -1 : 1;
-    return (x->number > y->number) - (x->number < y->number);
+    return (uint)(entry->key >> 32u);
+}
+
+static uint entry_code(const GridEntry *entry)
+{
+    return (uint)entry->key;
+}
+
+static void entry_set_group(GridEntry *entry, uint group)
+{
+    entry->key = (uint64_t)group << 32u | entry_code(entry);
 }
 
 void photon_grid_bounds(const Vec3 *first, size_t stride, uint count, PhotonParams *params)
@@ -73,7 +81,7 @@ static void groups_assign(GridEntry *entries, uint count)
     GridKind kinds[KINDS_MAX], *order[PHOTON_GROUPS - 1] = {0};
     uint known = 0;
     for (uint i = 0; i < count; ++i) {
-        const PhotonRecord *record = entries[i].record;
+        const PhotonRecord *record = entries[i].item;
         uint k = 0;
         while (k < known && !kind_has(&kinds[k], record))
             ++k;
@@ -87,8 +95,8 @@ static void groups_assign(GridEntry *entries, uint count)
             if (kinds[k].count > 0 && (!order[g] || kinds[k].count > order[g]->count))
                 order[g] = &kinds[k];
         for (uint i = 0; i < count && order[g]; ++i)
-            if (entries[i].group == PHOTON_GROUPS - 1 && kind_has(order[g], entries[i].record))
-                entries[i].group = g;
+            if (entry_group(&entries[i]) == PHOTON_GROUPS - 1 && kind_has(order[g], entries[i].item))
+                entry_set_group(&entries[i], g);
         if (order[g])
             order[g]->count = 0;
     }
@@ -100,7 +108,7 @@ static uint level_choose(const GridEntry *entries, uint count)
     for (uint level = PHOTON_LEVELS; level > 1u; --level) {
         uint shift = 3u * (PHOTON_LEVELS - level), cells = 1;
         for (uint i = 1; i < count; ++i)
-            cells += entries[i].code >> shift != entries[i - 1].code >> shift;
+            cells += entry_code(&entries[i]) >> shift != entry_code(&entries[i - 1]) >> shift;
         if (count / cells >= CELL_PHOTONS)
             return level;
     }
@@ -110,16 +118,16 @@ static uint level_choose(const GridEntry *entries, uint count)
 /* How far the predictions of entry i are from what photons nearby have found. */
 static double prediction_error(const GridEntry *entries, uint count, uint i)
 {
-    const PhotonRecord *own = entries[i].record;
+    const PhotonRecord *own = entries[i].item;
     double least = HUGE_VAL, second = HUGE_VAL; /* squared errors */
     for (int k = -COMPARED; k <= COMPARED; ++k) {
         if (k == 0 || (int64_t)i + k < 0 || (int64_t)i + k >= (int64_t)count)
             continue;
-        const PhotonRecord *other = entries[(int64_t)i + k].record;
+        const PhotonRecord *other = entries[(int64_t)i + k].item;
         Vec3 moved = vec3_sub(other->light_point, own->light_point);
         const double light_moved[2] = {(double)vec3_dot(moved, own->axes[0]), (double)vec3_dot(moved, own->axes[1])};
         double slopes[2], predicted[2];
-        if (entries[(int64_t)i + k].group != entries[i].group || other->light != own->light ||
+        if (entry_group(&entries[(int64_t)i + k]) != entry_group(&entries[i]) || other->light != own->light ||
             !photon_slopes(own->direction, other->direction, slopes))
             continue;
         photon_predict(own, other->point, light_moved, predicted);
@@ -168,20 +176,34 @@ static bool record_is_useful(const PhotonRecord *record)
     return record->light != NONE || M_PI * record->spread[0] * record->spread[2] < LOBE_MAX;
 }
 
+typedef struct SpreadSearch {
+    GridEntry *entries;
+    uint count;
+} SpreadSearch;
+
+/* Sets the spreads of a part of the entries. */
+static void spreads_set(void *context, size_t part)
+{
+    const SpreadSearch *search = context;
+    const uint first = (uint)part * SPREAD_PART;
+    const uint end = search->count - first < SPREAD_PART ? search->count : first + SPREAD_PART;
+    for (uint i = first; i < end; ++i)
+        spread_set(search->entries[i].item, prediction_error(search->entries, search->count, i));
+}
+
 /* Sets the spreads of sorted entries. Returns the mean, over the useful entries, of the part of the lobe that the light
  * fills; 1 if none is useful. */
-static double entries_spread(GridEntry *entries, uint count)
+static double entries_spread(GridEntry *entries, uint count, int threads)
 {
+    SpreadSearch search = {entries, count};
     double sum = 0.0;
     uint useful = 0;
-    for (uint i = 0; i < count; ++i) {
-        PhotonRecord *record = entries[i].record;
-        spread_set(record, prediction_error(entries, count, i));
-        if (record_is_useful(record)) {
-            sum += light_part(record);
+    parallel_run((count + SPREAD_PART - 1) / SPREAD_PART, threads, spreads_set, &search);
+    for (uint i = 0; i < count; ++i)
+        if (record_is_useful(entries[i].item)) {
+            sum += light_part(entries[i].item);
             ++useful;
         }
-    }
     return useful > 0 ? sum / useful : 1.0;
 }
 
@@ -190,7 +212,7 @@ static uint entries_keep(GridEntry *entries, uint count)
 {
     uint kept = 0;
     for (uint i = 0; i < count; ++i)
-        if (record_is_useful(entries[i].record))
+        if (record_is_useful(entries[i].item))
             entries[kept++] = entries[i];
     return kept;
 }
@@ -205,9 +227,9 @@ static void vector_put(uint *words, Vec3 v)
 static void words_fill(const GridEntry *entries, uint count, uint *words)
 {
     for (uint i = 0; i < count; ++i) {
-        const PhotonRecord *record = entries[i].record;
+        const PhotonRecord *record = entries[i].item;
         uint *photon = words + count + (size_t)i * PHOTON_WORDS;
-        words[i] = entries[i].code;
+        words[i] = entry_code(&entries[i]);
         vector_put(photon + PHOTON_POINT, record->point);
         vector_put(photon + PHOTON_DIRECTION, record->direction);
         for (int k = 0; k < 4; ++k)
@@ -224,7 +246,7 @@ static void groups_set(const GridEntry *entries, PhotonParams *params)
 {
     for (uint g = 0, i = 0; g < PHOTON_GROUPS; ++g) {
         params->first[g] = i;
-        while (i < params->count && entries[i].group == g)
+        while (i < params->count && entry_group(&entries[i]) == g)
             ++i;
         params->first[g + 1] = i;
         params->weight[g] = (float)sqrt((double)(i - params->first[g]) / params->count);
@@ -270,19 +292,20 @@ static GridEntry *entries_make(PhotonRecords *records, uint every, PhotonParams 
 {
     GridEntry *entries = malloc(records->count * sizeof *entries);
     *count = 0;
-    if (!entries) {
+    photon_grid_bounds(&records->records[0].point, sizeof *records->records, records->count, params);
+    for (uint i = 0; i < records->count && entries; i += every) {
+        PhotonRecord *record = &records->records[i];
+        entries[*count] = (GridEntry){photon_code(*params, record->point), record};
+        entry_set_group(&entries[(*count)++], PHOTON_GROUPS - 1);
+    }
+    if (entries)
+        groups_assign(entries, *count);
+    if (!entries || !key_sort(entries, *count)) {
+        free(entries);
         error_memory(error, records->count * sizeof *entries, "photons");
         return NULL;
     }
-    photon_grid_bounds(&records->records[0].point, sizeof *records->records, records->count, params);
-    for (uint i = 0; i < records->count; i += every)
-        entries[(*count)++] = (GridEntry){.group = PHOTON_GROUPS - 1,
-                                          .code = photon_code(*params, records->records[i].point),
-                                          .number = records->records[i].number,
-                                          .record = &records->records[i]};
-    groups_assign(entries, *count);
-    qsort(entries, *count, sizeof *entries, entry_compare);
-    *missed = 1.0 - entries_spread(entries, *count);
+    *missed = 1.0 - entries_spread(entries, *count, records->threads);
     return entries;
 }
 

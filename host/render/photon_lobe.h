@@ -23,6 +23,7 @@ typedef struct PhotonRecord {
 typedef struct PhotonRecords {
     PhotonRecord *records;
     uint count;
+    int threads; /* that compare them; at least this one */
 } PhotonRecords;
 
 /* Neighbours of a subpath: two through the same point of the light (or, at infinity, in the same direction), and two

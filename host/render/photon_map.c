@@ -1,6 +1,7 @@
 #include "render/photon_map.h"
 
 #include "base/log.h"
+#include "base/parallel.h"
 #include "render/photon_grid.h"
 #include "render/photon_lobe.h"
 #include "render/photon_pass.h"
@@ -10,17 +11,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Photons at first, and how many times as many follow ... */
+/* Photons at first, and how many times as many follow, about ... */
 #define PHOTONS_FIRST 32768u
 #define PHOTONS_GROWTH 4u
 
 /* ... while more than this part of the directions that they predict misses the light, and it is so much smaller than
- * with every PHOTONS_GROWTH-th of them: where surfaces are not smooth between photons, more predict hardly better. */
-#define MISSED_ENOUGH 0.01
+ * with the fewer before, or at first with every PHOTONS_GROWTH-th: where surfaces are not smooth between photons, more
+ * predict hardly better. */
+#define MISSED_ENOUGH 0.015
 #define MISSED_SHRINKS 0.6
 
 /* A map as large as is allowed of which more than this part misses gets a warning. */
 #define MISSED_TOO_OFTEN 0.5
+
+/* Subpaths that a thread deals with at a time. */
+#define BATCH_PART 1024u
 
 typedef struct PhotonMaker {
     PhotonPass pass;
@@ -30,29 +35,62 @@ typedef struct PhotonMaker {
     uint traced; /* subpaths whose neighbours have been traced */
 } PhotonMaker;
 
-/* Traces the neighbours of the next `count` subpaths, and makes photons of those whose neighbours all arrive the same
- * way. */
-static bool neighbours_trace(PhotonMaker *maker, uint count, Error *error)
+/* The next subpaths, whose neighbours are being traced. */
+typedef struct PhotonBatch {
+    PhotonMaker *maker;
+    const PhotonPath *paths;
+    PhotonRecord *records; /* of the same subpaths; number NONE: there is none */
+    uint count;
+} PhotonBatch;
+
+static uint part_end(const PhotonBatch *batch, size_t part)
 {
-    PhotonPass *pass = &maker->pass;
-    const PhotonPath *paths = maker->search.paths + maker->traced;
-    for (uint i = 0; i < count; ++i)
+    const uint end = (uint)(part + 1) * BATCH_PART;
+    return end < batch->count ? end : batch->count;
+}
+
+static void neighbours_begin(void *context, size_t part)
+{
+    const PhotonBatch *batch = context;
+    for (uint i = (uint)part * BATCH_PART; i < part_end(batch, part); ++i)
         for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k) {
-            PhotonPath neighbour = photon_neighbour(&maker->lights, &paths[i], k);
-            photon_pass_follow(pass, i * PHOTON_NEIGHBOURS + k, &neighbour);
+            PhotonPath neighbour = photon_neighbour(&batch->maker->lights, &batch->paths[i], k);
+            photon_pass_follow(&batch->maker->pass, i * PHOTON_NEIGHBOURS + k, &neighbour);
         }
-    if (!photon_pass_run(pass, count * PHOTON_NEIGHBOURS, &maker->search.whole, error))
-        return false;
-    maker->traced += count;
-    for (uint i = 0; i < count && maker->search.whole; ++i) {
+}
+
+/* Makes photons of subpaths whose neighbours have all arrived the same way. */
+static void neighbours_end(void *context, size_t part)
+{
+    const PhotonBatch *batch = context;
+    for (uint i = (uint)part * BATCH_PART; i < part_end(batch, part); ++i) {
+        const PhotonPath *path = &batch->paths[i];
         PhotonPath neighbours[PHOTON_NEIGHBOURS];
         bool same = true;
         for (uint k = 0; k < PHOTON_NEIGHBOURS; ++k)
-            same = photon_pass_get(pass, i * PHOTON_NEIGHBOURS + k, &neighbours[k]) &&
-                   neighbours[k].vertices == paths[i].vertices && neighbours[k].lobes == paths[i].lobes && same;
-        PhotonRecord *record = &maker->records.records[maker->records.count];
-        maker->records.count += same && photon_differences(&maker->lights, &paths[i], neighbours, record);
+            same = photon_pass_get(&batch->maker->pass, i * PHOTON_NEIGHBOURS + k, &neighbours[k]) &&
+                   neighbours[k].vertices == path->vertices && neighbours[k].lobes == path->lobes && same;
+        if (!same || !photon_differences(&batch->maker->lights, path, neighbours, &batch->records[i]))
+            batch->records[i].number = NONE;
     }
+}
+
+/* Traces the neighbours of the next `count` subpaths, and makes photons of them. */
+static bool neighbours_trace(PhotonMaker *maker, uint count, Error *error)
+{
+    PhotonRecords *records = &maker->records;
+    PhotonBatch batch = {maker, maker->search.paths + maker->traced, records->records + maker->traced, count};
+    const size_t parts = (count + BATCH_PART - 1) / BATCH_PART;
+    parallel_run(parts, records->threads, neighbours_begin, &batch);
+    if (!photon_pass_run(&maker->pass, count * PHOTON_NEIGHBOURS, &maker->search.whole, error))
+        return false;
+    maker->traced += count;
+    if (!maker->search.whole)
+        return true;
+    parallel_run(parts, records->threads, neighbours_end, &batch);
+    for (uint i = 0; i < count; ++i)
+        if (batch.records[i].number != NONE)
+            records->records[records->count++] = batch.records[i];
     return true;
 }
 
@@ -70,7 +108,8 @@ static bool records_make(PhotonMaker *maker, uint wanted, Error *error)
 
 static bool maker_init(PhotonMaker *maker, const RenderRun *run, const Scene *scene, uint count, Error *error)
 {
-    maker->records.records = malloc(count * sizeof *maker->records.records);
+    maker->records =
+        (PhotonRecords){.records = malloc(count * sizeof *maker->records.records), .threads = run->film->threads};
     if (!maker->records.records)
         return error_memory(error, count * sizeof *maker->records.records, "photons");
     return photon_lights_init(&maker->lights, scene, error) && photon_pass_init(&maker->pass, run, error) &&
@@ -85,16 +124,23 @@ static void maker_destroy(PhotonMaker *maker)
     free(maker->records.records);
 }
 
-/* Makes a map of all records. *missed: photon_grid_make; *by_fewer: the same by every PHOTONS_GROWTH-th. Both are 0 if
- * there are no records, or on a stop. */
-static bool map_fill(PhotonMaker *maker, PhotonMap *map, double *missed, double *by_fewer, Error *error)
+/* Makes a map of all records. *missed: photon_grid_make; 0 if there are no records, or on a stop. */
+static bool map_fill(PhotonMaker *maker, PhotonMap *map, double *missed, Error *error)
 {
-    *missed = *by_fewer = 0.0;
+    *missed = 0.0;
     photon_map_destroy(map);
     if (maker->records.count == 0 || !maker->search.whole)
         return true;
-    return photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, by_fewer, error) &&
-           photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+    return photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+}
+
+/* *missed: photon_grid_missed of every PHOTONS_GROWTH-th record; 0 as above. */
+static bool missed_by_fewer(PhotonMaker *maker, double *missed, Error *error)
+{
+    *missed = 0.0;
+    if (maker->records.count == 0 || !maker->search.whole)
+        return true;
+    return photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, missed, error);
 }
 
 uint photon_count_next(uint found, uint most, double missed, double by_fewer)
@@ -122,14 +168,17 @@ static void missed_warn(const PhotonMap *map, uint count, double missed)
 /* Makes a map of few photons, then of more until they are enough, `count` at most, or no more are found. */
 static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *error)
 {
-    uint wanted = PHOTONS_FIRST < count ? PHOTONS_FIRST : count;
-    while (wanted > 0) {
-        double missed, by_fewer;
-        if (!records_make(maker, wanted, error) || !map_fill(maker, map, &missed, &by_fewer, error))
+    const uint first = PHOTONS_FIRST < count ? PHOTONS_FIRST : count;
+    double missed = 0.0;
+    for (uint wanted = first; wanted > 0;) {
+        if (!records_make(maker, wanted, error) || (wanted == first && !missed_by_fewer(maker, &missed, error)))
+            return false;
+        const double by_fewer = missed;
+        if (!map_fill(maker, map, &missed, error))
             return false;
         if (wanted == count)
             missed_warn(map, count, missed);
-        uint found = maker->search.found;
+        const uint found = maker->search.found;
         wanted = found < wanted ? 0 : photon_count_next(found, count, missed, by_fewer);
     }
     return true;

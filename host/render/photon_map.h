@@ -14,7 +14,7 @@ bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, Photo
 void photon_map_destroy(PhotonMap *map);
 
 /* How many photons are to be made, at most `most`, when there are `found`, of whose predicted directions the part
- * `missed` misses the light, and `by_fewer` where each is predicted by a quarter of them; 0: these are enough. */
+ * `missed` misses the light, and `by_fewer` with about a quarter of them; 0: these are enough. */
 uint photon_count_next(uint found, uint most, double missed, double by_fewer);
 
 #endif

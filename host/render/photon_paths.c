@@ -20,12 +20,6 @@
 /* Subpaths on either side of one in that order that count as its neighbours. */
 #define NEAR 8
 
-/* A path that has arrived, to be sorted by its light and then by the Morton code of the place. */
-struct PathOrder {
-    uint light, code;
-    const PhotonPath *path;
-};
-
 static uint at_most(uint a, uint b)
 {
     return a < b ? a : b;
@@ -79,26 +73,23 @@ static bool search_lights(PhotonSearch *search, uint wanted, Error *error)
     return true;
 }
 
-static int order_compare(const void *a, const void *b)
-{
-    const PathOrder *x = a, *y = b;
-    if (x->light != y->light)
-        return x->light < y->light ? -1 : 1;
-    if (x->code != y->code)
-        return x->code < y->code ? -1 : 1;
-    return (x->path > y->path) - (x->path < y->path);
-}
-
-static void search_order(PhotonSearch *search)
+/* Sorts the paths that have arrived by their light, and then by the Morton code of the place. */
+static bool search_order(PhotonSearch *search, Error *error)
 {
     PhotonParams params;
     photon_grid_bounds(&search->paths[0].point, sizeof *search->paths, search->found, &params);
     for (uint i = 0; i < search->found; ++i) {
-        const PhotonPath *path = &search->paths[i];
-        search->order[i] = (PathOrder){path->light, photon_code(params, path->point), path};
+        PhotonPath *path = &search->paths[i];
+        search->order[i] = (KeyedItem){(uint64_t)path->light << 32u | photon_code(params, path->point), path};
     }
     search->ordered = search->found;
-    qsort(search->order, search->ordered, sizeof *search->order, order_compare);
+    return key_sort(search->order, search->ordered) ||
+           error_memory(error, search->ordered * sizeof *search->order, "photons");
+}
+
+static const PhotonPath *order_path(const PhotonSearch *search, uint at)
+{
+    return search->order[at].item;
 }
 
 /* A neighbour of place `at` in the order, or its own path where there is none. */
@@ -106,8 +97,9 @@ static const PhotonPath *order_neighbour(const PhotonSearch *search, uint at, ui
 {
     int step = (int)(random % (2u * NEAR + 1u)) - NEAR;
     int64_t other = (int64_t)at + step;
-    bool near = other >= 0 && other < (int64_t)search->ordered && search->order[other].light == search->order[at].light;
-    return search->order[near ? (uint)other : at].path;
+    bool near = other >= 0 && other < (int64_t)search->ordered &&
+                order_path(search, (uint)other)->light == order_path(search, at)->light;
+    return order_path(search, near ? (uint)other : at);
 }
 
 /* Some of the way from v towards a and b, or away from them. */
@@ -129,7 +121,7 @@ static Vec3 path_crossing(const PhotonSearch *search, const PhotonPath *path)
 static PhotonPath path_between(const PhotonSearch *search, uint at, uint number)
 {
     Random4 random = search_random(search, number);
-    PhotonPath path = *search->order[at].path;
+    PhotonPath path = *order_path(search, at);
     const PhotonPath *a = order_neighbour(search, at, random.x[0]), *b = order_neighbour(search, at, random.x[1]);
     if (photon_light_is_far(search->lights, path.light))
         path.origin = vec3_add(path.origin, step_between(path_crossing(search, &path), path_crossing(search, a),
@@ -147,7 +139,8 @@ static bool search_between(PhotonSearch *search, uint wanted, Error *error)
     uint next = 0;
     for (uint64_t drawn = 0; search->whole && drawn < most && search->found < wanted;) {
         if (search->found >= 2 * search->ordered) {
-            search_order(search);
+            if (!search_order(search, error))
+                return false;
             next = 0;
         }
         uint batch = at_most(PASS_PATHS, 2 * search->ordered);

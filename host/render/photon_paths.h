@@ -4,10 +4,9 @@
 #ifndef TWINLIGHT_RENDER_PHOTON_PATHS_H
 #define TWINLIGHT_RENDER_PHOTON_PATHS_H
 
+#include "base/key_sort.h"
 #include "render/photon_lobe.h"
 #include "render/photon_pass.h"
-
-typedef struct PathOrder PathOrder;
 
 typedef struct PhotonSearch {
     PhotonPass *pass;
@@ -16,7 +15,7 @@ typedef struct PhotonSearch {
     uint found, most;
     uint drawn; /* from the lights */
     uint number; /* of the next subpath */
-    PathOrder *order;
+    KeyedItem *order; /* PhotonPaths, by their light and then by their place */
     uint ordered; /* paths that are in it */
     bool whole; /* false: stopped */
 } PhotonSearch;

@@ -238,7 +238,7 @@ START_TEST(test_spread)
     enum { COUNT = 64 };
     static const double by_light[4] = {0.3, -0.1, 0.2, 0.4}, extent[3] = {0.04, 0.01, 0.02};
     PhotonRecord each[COUNT];
-    PhotonRecords records = {each, COUNT};
+    PhotonRecords records = {each, COUNT, 2};
     const PhotonLights lights = {0};
     PhotonMap map = {0};
     Error error = {0};
@@ -277,7 +277,7 @@ START_TEST(test_agreement)
 {
     const Vec3 up = vec3(0.0f, 0.0f, 1.0f), aside = vec3_normalize(vec3(0.1f, 0.0f, 1.0f));
     PhotonRecord each[3];
-    PhotonRecords records = {each, 3};
+    PhotonRecords records = {each, 3, 1};
     const PhotonLights lights = {0};
     PhotonMap map = {0};
     Error error = {0};
@@ -305,7 +305,7 @@ START_TEST(test_directories)
 {
     enum { COUNT = 5000 };
     static PhotonRecord each[COUNT];
-    PhotonRecords records = {each, COUNT};
+    PhotonRecords records = {each, COUNT, 2};
     const PhotonLights lights = {0};
     PhotonMap map = {0};
     Error error = {0};
