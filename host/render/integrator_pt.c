@@ -46,7 +46,7 @@ static void vertex_record(Recorder *recorder, const PathSteps *steps, uint depth
     recorder_kernel(recorder, KERNEL_pt_sample_lights, true);
     recorder_step(recorder, STEP_TRACE_SHADOW);
     recorder_kernel(recorder, KERNEL_pt_add_lights, true);
-    const uint draws = depth <= RECEIVER_DRAWS_LAST ? RECEIVER_DRAWS : 1;
+    const uint draws = receiver_draw_count(depth);
     for (uint i = 0; i < draws && steps->caustics; ++i)
         caustics_record(recorder, steps);
     recorder_kernel(recorder, KERNEL_pt_extend_paths, !steps->caustics);

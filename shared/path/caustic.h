@@ -39,7 +39,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
     uint stride = frame->pass.stride, depth = state_load(paths, stride, PATH_DEPTH, item);
     uint delta = state_load(paths, stride, PATH_DELTA, item),
          drawn = state_load(paths, stride, PATH_CAUSTIC_DRAWN, item);
-    const uint draws = receiver_draw_count(delta, depth);
+    const uint draws = receiver_draw_count(depth);
     state_store(paths, stride, PATH_CAUSTIC_DRAWN, item, drawn + 1u);
     if (drawn >= draws || depth + 2u > frame->path.max_depth ||
         (state_load(paths, stride, PATH_BSDF + STORED_BSDF_FLAGS, item) & BSDF_SMOOTH) != 0u ||

@@ -71,18 +71,14 @@ SHARED_FUNCTION uint receiver_find(uint everywhere, uint delta, uint last)
     return number > 0u && caustic && receiver_draws(everywhere, delta, number) ? number : 0u;
 }
 
-/* The first receiver of a camera subpath draws so many directions, if no vertex before it scattered otherwise than by a
- * delta lobe, and if it is none behind RECEIVER_DRAWS_LAST. */
+/* Receivers draw so many directions, but those behind RECEIVER_DRAWS_LAST, which draw one. */
 #define RECEIVER_DRAWS 2u
 #define RECEIVER_DRAWS_LAST 4u
 
-/* How many directions z_number draws by photons, if it does. delta: receiver_draws. */
-SHARED_FUNCTION uint receiver_draw_count(uint delta, uint number)
+/* How many directions z_number draws by photons, if it does. */
+SHARED_FUNCTION uint receiver_draw_count(uint number)
 {
-    if (number > RECEIVER_DRAWS_LAST)
-        return 1u;
-    uint before = ((1u << number) - 1u) & ~1u;
-    return (delta & before) == before ? RECEIVER_DRAWS : 1u;
+    return number <= RECEIVER_DRAWS_LAST ? RECEIVER_DRAWS : 1u;
 }
 
 /* How a camera subpath left its latest vertex that scattered otherwise than by a delta lobe, in fields from `base`
@@ -122,7 +118,7 @@ SHARED_FUNCTION float receiver_rest(const SceneView *scene, __global const uint 
         return 1.0f;
     float q = caustic_density(scene, state_load_vec3(paths, stride, base + RECEIVER_POINT, item),
                               state_load_vec3(paths, stride, base + RECEIVER_DIRECTION, item), NONE);
-    float draws = (float)receiver_draw_count(delta, number);
+    float draws = (float)receiver_draw_count(number);
     return caustic_rest_of(state_load_float(paths, stride, base + RECEIVER_PDF, item), draws * q);
 }
 

@@ -93,24 +93,42 @@ SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint 
     return first;
 }
 
+/* Of so many photons it takes less time to look at all than to search. */
+#define PHOTONS_COUNTED 32u
+
+/* Narrows the photons *first ... *last - 1 to those whose codes are cell ... next - 1. */
+SHARED_FUNCTION void photon_narrow(__global const uint *photons, uint cell, uint next, uint *first, uint *last)
+{
+    uint begin = *first, end = *last, before = 0u, within = 0u;
+    if (end - begin > PHOTONS_COUNTED) {
+        *first = photon_find(photons, begin, end, cell);
+        *last = photon_find(photons, *first, end, next);
+        return;
+    }
+    for (uint i = begin; i < end; ++i) {
+        before += photons[i] < cell ? 1u : 0u;
+        within += photons[i] < next ? 1u : 0u;
+    }
+    *first = begin + before;
+    *last = begin + within;
+}
+
 /* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
 SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, uint cell,
                                       uint shift, uint *first, uint *last)
 {
-    uint begin = params.first[group], end = params.first[group + 1u], next = cell + (1u << shift);
+    uint next = cell + (1u << shift);
+    *first = params.first[group];
+    *last = params.first[group + 1u];
     if (params.directory_level > 0u) {
         uint entry_shift = 3u * (PHOTON_LEVELS - params.directory_level);
         __global const uint *directory = photons + params.directory[group];
-        begin = directory[cell >> entry_shift];
-        end = directory[((next - 1u) >> entry_shift) + 1u];
-        if (shift >= entry_shift) {
-            *first = begin;
-            *last = end;
+        *first = directory[cell >> entry_shift];
+        *last = directory[((next - 1u) >> entry_shift) + 1u];
+        if (shift >= entry_shift)
             return;
-        }
     }
-    *first = photon_find(photons, begin, end, cell);
-    *last = photon_find(photons, *first, end, next);
+    photon_narrow(photons, cell, next, first, last);
 }
 
 /* The photons first ... last - 1, or at most `most` that stand for them. */
@@ -135,8 +153,8 @@ SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *p
     }
     for (shift -= 3u; first != last && shift > 0u; shift -= 3u) {
         uint cell = code >> (shift - 3u) << (shift - 3u);
-        uint inner = photon_find(photons, first, last, cell);
-        uint inner_end = photon_find(photons, inner, last, cell + (1u << (shift - 3u)));
+        uint inner = first, inner_end = last;
+        photon_narrow(photons, cell, cell + (1u << (shift - 3u)), &inner, &inner_end);
         if (inner_end - inner < PHOTONS_LEAST)
             break;
         first = inner;

@@ -309,12 +309,39 @@ START_TEST(test_found_among_many)
 }
 END_TEST
 
+/* More photons are made only where they predict better: of a bead's caustic those of a small lamp do, those of a large
+ * one hit it anyway. */
+START_TEST(test_found_more)
+{
+    static const struct {
+        const char *lamp;
+        unsigned least, most;
+    } cases[] = {{BALL_LAMP("0.3", "30"), 1, 100000}, {BALL_LAMP("0.003", "300000"), 200000, 262144}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char text[4096];
+        snprintf(text, sizeof text,
+                 BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS
+                                           "AttributeBegin Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.15 "
+                                           "AttributeEnd\n",
+                 cases[i].lamp);
+        const RenderSetup setup = {.text = text, .samples = 1, .threads = 2, .photons = 262144};
+        RenderedImage image;
+        fixture_render(&setup, &image);
+        printf("lamp %zu: %u photons\n", i, image.result.photons);
+        ck_assert_uint_ge(image.result.photons, cases[i].least);
+        ck_assert_uint_le(image.result.photons, cases[i].most);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("caustic");
     suite_add_tcase(suite, photons_case());
     TCase *search = tcase_create("search");
     tcase_add_test(search, test_found_among_many);
+    tcase_add_test(search, test_found_more);
     suite_add_tcase(suite, search);
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
