@@ -1,5 +1,8 @@
 #include "base/zeros.h"
 
+#include "base/parallel.h"
+#include "base/processors.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +10,12 @@
 
 /* Bytes of a large page on x86-64 and most ARM systems. */
 #define LARGE_PAGE ((size_t)2 << 20)
+
+/* Writes the zeros of a large page. */
+static void page_clear(void *zeros, size_t page)
+{
+    memset((char *)zeros + page * LARGE_PAGE, 0, LARGE_PAGE);
+}
 
 void *zeros_alloc(size_t count, size_t size)
 {
@@ -21,5 +30,6 @@ void *zeros_alloc(size_t count, size_t size)
 #ifdef MADV_HUGEPAGE
     (void)madvise(zeros, whole, MADV_HUGEPAGE); /* ordinary pages do as well */
 #endif
-    return memset(zeros, 0, bytes);
+    parallel_run(whole / LARGE_PAGE, processors_usable(), page_clear, zeros);
+    return zeros;
 }

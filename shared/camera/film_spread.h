@@ -67,24 +67,34 @@ typedef struct Spread {
     FilmUnits units;
     FilmShare share;
     bool counts; /* as a sample of all pixels */
+    __global ulong *pending_sums; /* all shares go to these alone, by way of `pending`; NULL: film_share_add */
     uint parts; /* given to pixels so far, and the same in units */
     ulong given[3];
 } Spread;
 
+/* A channel's units that the first `parts` of all parts have. */
+SHARED_FUNCTION ulong spread_due(ulong units, uint parts, bool small)
+{
+    return small ? units * parts / SPREAD_PARTS
+                 : units / SPREAD_PARTS * parts + units % SPREAD_PARTS * parts / SPREAD_PARTS;
+}
+
 /* Gives the pixel share.slot the parts up to `parts` of all. */
 SHARED_FUNCTION void spread_add(Spread *spread, uint parts, bool negative)
 {
+    uint samples = spread->counts ? parts - spread->parts : 0u;
     for (uint c = 0; c < 3u; ++c) {
-        ulong units = spread->units.rgb[c];
-        ulong due = spread->share.small ? units * parts / SPREAD_PARTS
-                                        : units / SPREAD_PARTS * parts + units % SPREAD_PARTS * parts / SPREAD_PARTS;
-        ulong own = due - spread->given[c];
+        ulong due = spread_due(spread->units.rgb[c], parts, spread->share.small), own = due - spread->given[c];
         spread->share.rgb[c] = spread->units.negative[c] != negative ? 0u - own : own;
         spread->given[c] = due;
     }
-    spread->share.samples = spread->counts ? parts - spread->parts : 0u;
-    film_share_add(spread->film, spread->pending, &spread->share);
     spread->parts = parts;
+    if (spread->pending_sums) {
+        film_pending_put(spread->film, spread->pending, spread->pending_sums, &spread->share, samples);
+        return;
+    }
+    spread->share.samples = samples;
+    film_share_add(spread->film, spread->pending, &spread->share);
 }
 
 /* Spreads a splat over the pixels of both axes. Systematic rounding: after each pixel, the parts given are the floor of
@@ -93,24 +103,25 @@ SHARED_FUNCTION void spread_all(Spread *spread, const SpreadAxis *across, const 
 {
     const FilmView *film = spread->film;
     float scale = (float)SPREAD_PARTS / (across->sum * down->sum), density = 0.0f;
-    for (uint j = 0; j < down->count; ++j)
+    for (uint j = 0; j < down->count; ++j) {
+        uint y = down->first + j, row = (y - film->y0) * (film->x1 - film->x0) - film->x0;
         for (uint i = 0; i < across->count; ++i) {
             bool last = j + 1u == down->count && i + 1u == across->count;
             density += across->density[i] * down->density[j];
             float due = last ? (float)SPREAD_PARTS : float_min(density * scale, (float)SPREAD_PARTS);
-            uint parts = (uint)(due + rounding);
-            uint x = across->first + i, y = down->first + j;
-            spread->share.slot = (y - film->y0) * (film->x1 - film->x0) + x - film->x0;
+            uint parts = (uint)(due + rounding), x = across->first + i;
+            spread->share.slot = row + x;
             spread->share.place = film_pending_place(x, y);
             if (parts != spread->parts)
                 spread_add(spread, parts, across->sign[i] * down->sign[j] < 0.0f);
         }
+    }
 }
 
 /* A splat that names the pixel `slot`. */
 typedef struct FilmSplat {
     uint name, slot;
-    uint pixel; /* of the whole film */
+    uint column, row; /* of the pixel in the whole film */
     uint offset; /* splat_offset */
     FilmUnits units;
 } FilmSplat;
@@ -120,7 +131,7 @@ SHARED_FUNCTION void film_whole_add(const FilmView *film, FilmPending *pending, 
 {
     FilmShare share;
     share.slot = splat->slot;
-    share.place = film_pending_place(splat->pixel % film->width, splat->pixel / film->width);
+    share.place = film_pending_place(splat->column, splat->row);
     share.name = splat->name;
     share.small = film_units_small(&splat->units);
     for (uint c = 0; c < 3u; ++c)
@@ -133,9 +144,8 @@ SHARED_FUNCTION void film_whole_add(const FilmView *film, FilmPending *pending, 
 SHARED_FUNCTION void film_spread_add(const FilmView *film, FilmPending *pending, const FilmSplat *splat)
 {
     bool sample = (splat->name & SPLAT_LIGHT) == 0u, own = film_filter_signed(film->axis_x.kind);
-    uint column = splat->pixel % film->width, row = splat->pixel / film->width;
-    float x = (float)column + 0.5f + splat_offset_of(splat->offset & 0xffffu, film->axis_x.radius);
-    float y = (float)row + 0.5f + splat_offset_of(splat->offset >> 16, film->axis_y.radius);
+    float x = (float)splat->column + 0.5f + splat_offset_of(splat->offset & 0xffffu, film->axis_x.radius);
+    float y = (float)splat->row + 0.5f + splat_offset_of(splat->offset >> 16, film->axis_y.radius);
     SpreadAxis across, down;
     spread_axis_set(&across, &film->axis_x, x);
     spread_axis_set(&down, &film->axis_y, y);
@@ -150,6 +160,9 @@ SHARED_FUNCTION void film_spread_add(const FilmView *film, FilmPending *pending,
     spread.share.name = splat->name;
     spread.share.small = film_units_small(&splat->units);
     spread.counts = sample && !own;
+    spread.pending_sums = 0;
+    if (pending && spread.share.small && (splat->name & SPLAT_RARE) == 0u && film->depth_kinds == 0u)
+        spread.pending_sums = sample ? film->sums : film->light_sums;
     spread.parts = 0u;
     spread.given[0] = spread.given[1] = spread.given[2] = 0u;
     spread_all(&spread, &across, &down, spread_rounding(splat->offset));
@@ -165,9 +178,11 @@ SHARED_FUNCTION void film_splat_add(const FilmView *film, FilmPending *pending, 
 {
     FilmSplat splat;
     splat.name = state_load(splats, stride, SPLAT_PIXEL, item);
-    splat.pixel = splat.name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
-    splat.slot = splat.name != NONE ? film_slot(film, splat.pixel) : NONE;
-    if (splat.slot == NONE)
+    uint pixel = splat.name & (film->depth_kinds != 0u ? (1u << SPLAT_DEPTH_SHIFT) - 1u : ~SPLAT_LAYERS);
+    splat.column = pixel % film->width;
+    splat.row = pixel / film->width;
+    splat.slot = film_slot_at(film, splat.column, splat.row);
+    if (splat.name == NONE || splat.slot == NONE)
         return;
     Vec3 color = state_load_vec3(splats, stride, SPLAT_COLOR, item);
     if (!vec3_finite(color)) {

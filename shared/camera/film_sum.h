@@ -85,12 +85,17 @@ SHARED_FUNCTION void film_view_words(FilmView *film, __global ulong *words, uint
     film->depth_sums = words + film_words(pixels, film->depth_kinds > FILM_KIND_RARE ? 2u : 1u);
 }
 
-/* Index of the pixel among those kept, or NONE. */
-SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
+/* Index of the pixel in column x and row y among those kept, or NONE. */
+SHARED_FUNCTION uint film_slot_at(const FilmView *film, uint x, uint y)
 {
-    uint x = pixel % film->width, y = pixel / film->width;
     bool kept = x >= film->x0 && x < film->x1 && y >= film->y0 && y < film->y1;
     return kept ? (y - film->y0) * (film->x1 - film->x0) + x - film->x0 : NONE;
+}
+
+/* The same of a pixel y * width + x of the whole film. */
+SHARED_FUNCTION uint film_slot(const FilmView *film, uint pixel)
+{
+    return film_slot_at(film, pixel % film->width, pixel / film->width);
 }
 
 /* |value| in units of 2^exponent, rounded to the nearest, halves up, and clamped to CONTRIBUTION_MAX, or NEGATIVE_MAX
@@ -213,12 +218,14 @@ SHARED_FUNCTION void film_sums_add(__global ulong *sums, const ulong rgb[3])
 #define FILM_PENDING_PIXELS (FILM_PENDING_COLUMNS * FILM_PENDING_ROWS)
 #define FILM_PENDING_SPLATS (1u << 16)
 
+typedef struct FilmPendingPixel {
+    __global ulong *sums; /* of the pixel; NULL: none */
+    ulong rgb[3];
+    uint slot, samples;
+} FilmPendingPixel;
+
 typedef struct FilmPending {
-    struct {
-        __global ulong *sums; /* of the pixel; NULL: none */
-        ulong rgb[3];
-        uint slot, samples;
-    } pixels[FILM_PENDING_PIXELS];
+    FilmPendingPixel pixels[FILM_PENDING_PIXELS];
 } FilmPending;
 
 /* The place of the pixel in column x and row y. */
@@ -233,43 +240,55 @@ SHARED_FUNCTION void film_pending_begin(FilmPending *pending)
         pending->pixels[place].sums = 0;
 }
 
-SHARED_FUNCTION void film_pending_add(const FilmView *film, const FilmPending *pending, uint place)
+SHARED_FUNCTION void film_pending_add(const FilmView *film, const FilmPendingPixel *pixel)
 {
-    if (!pending->pixels[place].sums)
+    if (!pixel->sums)
         return;
-    film_sums_add(pending->pixels[place].sums, pending->pixels[place].rgb);
-    if (pending->pixels[place].samples != 0u)
-        atomic_count_add(film->counts + pending->pixels[place].slot, pending->pixels[place].samples);
+    film_sums_add(pixel->sums, pixel->rgb);
+    if (pixel->samples != 0u)
+        atomic_count_add(film->counts + pixel->slot, pixel->samples);
 }
 
 SHARED_FUNCTION void film_pending_end(const FilmView *film, const FilmPending *pending)
 {
     for (uint place = 0; place < FILM_PENDING_PIXELS; ++place)
-        film_pending_add(film, pending, place);
+        film_pending_add(film, &pending->pixels[place]);
+}
+
+/* Gives a place of the table, which may be another pixel's, to the sums of the pixel `slot`. */
+SHARED_FUNCTION void film_pending_take(const FilmView *film, FilmPendingPixel *pixel, __global ulong *sums, uint slot)
+{
+    film_pending_add(film, pixel);
+    pixel->sums = sums;
+    pixel->slot = slot;
+    pixel->rgb[0] = pixel->rgb[1] = pixel->rgb[2] = 0u;
+    pixel->samples = 0u;
+}
+
+/* Adds a small share to the sums of its pixel, which are sums[3 slot] and those after it, and to its samples. */
+SHARED_FUNCTION void film_pending_put(const FilmView *film, FilmPending *pending, __global ulong *sums,
+                                      const FilmShare *share, uint samples)
+{
+    FilmPendingPixel *pixel = &pending->pixels[share->place];
+    sums += 3u * (size_t)share->slot;
+    if (pixel->sums != sums)
+        film_pending_take(film, pixel, sums, share->slot);
+    for (uint c = 0; c < 3u; ++c)
+        pixel->rgb[c] += share->rgb[c];
+    pixel->samples += samples;
 }
 
 /* Adds a share to three sums of its pixel, and the samples to its count. */
 SHARED_FUNCTION void film_rgb_add(const FilmView *film, FilmPending *pending, __global ulong *sums,
                                   const FilmShare *share, uint samples)
 {
-    sums += 3u * (size_t)share->slot;
-    if (!pending || !share->small) {
-        film_sums_add(sums, share->rgb);
-        if (samples != 0u)
-            atomic_count_add(film->counts + share->slot, samples);
+    if (pending && share->small) {
+        film_pending_put(film, pending, sums, share, samples);
         return;
     }
-    uint place = share->place;
-    if (pending->pixels[place].sums != sums) {
-        film_pending_add(film, pending, place);
-        pending->pixels[place].sums = sums;
-        pending->pixels[place].slot = share->slot;
-        pending->pixels[place].rgb[0] = pending->pixels[place].rgb[1] = pending->pixels[place].rgb[2] = 0u;
-        pending->pixels[place].samples = 0u;
-    }
-    for (uint c = 0; c < 3u; ++c)
-        pending->pixels[place].rgb[c] += share->rgb[c];
-    pending->pixels[place].samples += samples;
+    film_sums_add(sums + 3u * (size_t)share->slot, share->rgb);
+    if (samples != 0u)
+        atomic_count_add(film->counts + share->slot, samples);
 }
 
 /* Adds to the sums by depth a share that has been added to the main sums. */

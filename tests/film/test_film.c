@@ -305,6 +305,25 @@ START_TEST(test_sums_of_a_device)
 }
 END_TEST
 
+/* A pixel is full if one of its sums is SUM_MAX from 0 or farther, on either side. */
+START_TEST(test_full_sums)
+{
+    const int64_t most = (int64_t)SUM_MAX,
+                  values[] = {0, 1, -1, most - 1, 1 - most, most, -most, INT64_MAX, -INT64_MAX};
+    Error error;
+    Film film = film_make(4, 3, CROP_WHOLE);
+    ck_assert(film_light_reserve(&film, &error) && film_rare_reserve(&film, &error));
+    int64_t *sums[] = {film.sums, film.light_sums, film.rare_sums};
+    for (size_t i = 0; i < 3 * sizeof values / sizeof values[0]; ++i) {
+        sums[i % 3][3 * 5 + i / 3 % 3] = values[i / 3];
+        ck_assert_uint_eq(film_full_pixels(&film), i / 3 >= 5);
+        ck_assert_uint_eq(film_full_pixels_of(&film, 0, 5) + film_full_pixels_of(&film, 6, 12), 0);
+        sums[i % 3][3 * 5 + i / 3 % 3] = 0;
+    }
+    film_destroy(&film);
+}
+END_TEST
+
 /* A sum that would overflow 64 bits saturates, reads as 2^62 units, and its pixel counts as full. */
 START_TEST(test_full)
 {
@@ -428,6 +447,7 @@ int main(void)
     tcase_add_test(tcase, test_rare);
     tcase_add_test(tcase, test_depths);
     tcase_add_test(tcase, test_sums_of_a_device);
+    tcase_add_test(tcase, test_full_sums);
     tcase_add_test(tcase, test_full);
     tcase_add_test(tcase, test_order_of_full_sums);
     tcase_add_test(tcase, test_zeros);

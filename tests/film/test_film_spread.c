@@ -472,6 +472,25 @@ START_TEST(test_together)
 }
 END_TEST
 
+/* Rare light is in its own sums and in the others, in films without depths, too. */
+START_TEST(test_rare)
+{
+    LightFixture f;
+    Film film;
+    setup(&f, &FILTER_CASES[FILTER_GAUSSIAN].settings, RECONSTRUCTION_SPLAT, &film);
+    film.depth_kinds = 0;
+    samples_add(&f, &film, SPLAT_SAMPLE | SPLAT_RARE, 2, 0, vec3(1.0f, 2.0f, 3.0f));
+    size_t bytes = 3 * PIXELS * sizeof *film.sums;
+    ck_assert_int_gt(film.sums[0], 0);
+    ck_assert_mem_eq(film.sums, film.rare_sums, bytes);
+    film_clear(&film);
+    samples_add(&f, &film, SPLAT_LIGHT | SPLAT_RARE, 2, 0, vec3(1.0f, 2.0f, 3.0f));
+    ck_assert_int_gt(film.light_sums[0], 0);
+    ck_assert_mem_eq(film.light_sums, film.rare_sums, bytes);
+    teardown(&f, &film);
+}
+END_TEST
+
 TCase *film_spread_tcase(void)
 {
     TCase *tcase = tcase_create("spread");
@@ -485,6 +504,7 @@ TCase *film_spread_tcase(void)
     tcase_add_test(tcase, test_merge);
     tcase_add_test(tcase, test_extremes);
     tcase_add_test(tcase, test_together);
+    tcase_add_test(tcase, test_rare);
     return tcase;
 }
 

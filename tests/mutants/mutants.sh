@@ -213,8 +213,8 @@ likely() {
     host/pbrt/* | host/scene/media_setup.c) echo test_import ;;
     shared/bsdf/*.h) echo test_bsdf:inverse test_shift ;;
     shared/path/partition.h) echo test_chain:shown test_partition test_chain test_layers test_pool ;;
-    host/render/photon_lights.c | host/render/photon_lobe.c) echo test_photon_lights test_caustic ;;
-    host/render/photon_map.c) echo test_caustic:photons command/test_outputs.sh test_caustic ;;
+    host/render/photon_lights.c | host/render/photon_lobe.c | host/render/photon_grid.c) echo test_photon_lights test_caustic ;;
+    host/render/photon_map.c) echo test_caustic:photons test_caustic:search command/test_outputs.sh test_caustic ;;
     shared/path/caustic.h | shared/path/caustic_rest.h | shared/path/photon.h | host/render/photon_*.c) echo test_caustic:photons test_caustic ;;
     shared/chain/pool.h) echo test_chain:shown test_partition test_chain_population test_pool test_layers ;;
     shared/chain/chain_light.h) echo test_chain:shown test_partition test_layers test_shift ;;
@@ -230,6 +230,7 @@ likely() {
     shared/camera/pixel_filter.h | shared/layout/item.h) echo test_film test_bidirectional:film ;;
     host/mmlt/chain_population.c) echo test_chain_population test_restore test_layers ;;
     host/mmlt/plan.c) echo test_plan test_combination:known ;;
+    host/base/key_sort.c) echo test_key_sort ;;
     host/base/parallel.c) echo test_mmlt:threads test_combination ;;
     host/ranks/* | host/base/processors.c | host/main.c) echo test_ranks command/test_mpi.sh ;;
     host/backend/shares.c) echo test_group ;;
