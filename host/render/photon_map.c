@@ -124,23 +124,25 @@ static void maker_destroy(PhotonMaker *maker)
     free(maker->records.records);
 }
 
-/* Makes a map of all records. *missed: photon_grid_make; 0 if there are no records, or on a stop. */
+/* Whether a map can be made: there are records, and there was no stop. */
+static bool has_records(const PhotonMaker *maker)
+{
+    return maker->records.count > 0 && maker->search.whole;
+}
+
+/* Makes a map of all records. *missed: photon_grid_make; 0 if there can be none. */
 static bool map_fill(PhotonMaker *maker, PhotonMap *map, double *missed, Error *error)
 {
     *missed = 0.0;
     photon_map_destroy(map);
-    if (maker->records.count == 0 || !maker->search.whole)
-        return true;
-    return photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+    return !has_records(maker) || photon_grid_make(&maker->records, &maker->lights, map, missed, error);
 }
 
 /* *missed: photon_grid_missed of every PHOTONS_GROWTH-th record; 0 as above. */
 static bool missed_by_fewer(PhotonMaker *maker, double *missed, Error *error)
 {
     *missed = 0.0;
-    if (maker->records.count == 0 || !maker->search.whole)
-        return true;
-    return photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, missed, error);
+    return !has_records(maker) || photon_grid_missed(&maker->records, &maker->lights, PHOTONS_GROWTH, missed, error);
 }
 
 uint photon_count_next(uint found, uint most, double missed, double by_fewer)
