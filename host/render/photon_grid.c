@@ -286,21 +286,28 @@ static void directories_fill(const PhotonParams *params, uint *words)
     }
 }
 
+/* Fills `entries` with every `every`-th record in the order of the grid, which params has the place of; returns their
+ * number, or 0 if there is no memory to sort them. There are records. */
+static uint entries_fill(const PhotonRecords *records, uint every, PhotonParams params, GridEntry *entries)
+{
+    uint count = 0;
+    for (uint i = 0; i < records->count; i += every) {
+        PhotonRecord *record = &records->records[i];
+        entries[count] = (GridEntry){photon_code(params, record->point), record};
+        entry_set_group(&entries[count++], PHOTON_GROUPS - 1);
+    }
+    groups_assign(entries, count);
+    return key_sort(entries, count) ? count : 0;
+}
+
 /* Entries of every `every`-th record in the order of the grid, with spreads; NULL: no memory. Sets the grid's place. */
 static GridEntry *entries_make(PhotonRecords *records, uint every, PhotonParams *params, uint *count, double *missed,
                                Error *error)
 {
     GridEntry *entries = malloc(records->count * sizeof *entries);
-    *count = 0;
     photon_grid_bounds(&records->records[0].point, sizeof *records->records, records->count, params);
-    for (uint i = 0; i < records->count && entries; i += every) {
-        PhotonRecord *record = &records->records[i];
-        entries[*count] = (GridEntry){photon_code(*params, record->point), record};
-        entry_set_group(&entries[(*count)++], PHOTON_GROUPS - 1);
-    }
-    if (entries)
-        groups_assign(entries, *count);
-    if (!entries || !key_sort(entries, *count)) {
+    *count = entries ? entries_fill(records, every, *params, entries) : 0;
+    if (*count == 0) {
         free(entries);
         error_memory(error, records->count * sizeof *entries, "photons");
         return NULL;
