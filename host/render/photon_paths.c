@@ -6,10 +6,6 @@
 
 #include <stdlib.h>
 
-/* Part of the subpaths that is drawn from the lights, at least FIRST_MIN. */
-#define FIRST_PART 8u
-#define FIRST_MIN 8192u
-
 /* Most subpaths that are drawn from the lights, and between those that have arrived, for each that is wanted. */
 #define DRAWN_FIRST 4u
 #define DRAWN_BETWEEN 4u
@@ -57,12 +53,11 @@ static void search_draw(PhotonSearch *search, uint item, uint number)
     photon_pass_aim(search->pass, item, number, smooth_boxes_point(&search->lights->aims, u));
 }
 
-/* Draws subpaths from the lights until a part of `wanted` has arrived. */
+/* Draws subpaths from the lights until `wanted` have arrived, DRAWN_FIRST times as many at most. */
 static bool search_lights(PhotonSearch *search, uint wanted, Error *error)
 {
-    uint first = wanted / FIRST_PART > FIRST_MIN ? wanted / FIRST_PART : at_most(wanted, FIRST_MIN);
     uint64_t most = (uint64_t)wanted * DRAWN_FIRST;
-    while (search->whole && search->drawn < most && search->found < first &&
+    while (search->whole && search->drawn < most && search->found < wanted &&
            (search->found > 0 || search->drawn < BLACK_PATHS)) {
         for (uint i = 0; i < PASS_PATHS; ++i)
             search_draw(search, i, search->number + i);

@@ -5,7 +5,9 @@
 #include "support/bidirectional.h"
 #include "support/test_files.h"
 
+#include "backend_cpu.h"
 #include "mmlt/combination.h"
+#include "render/photon_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -316,7 +318,7 @@ START_TEST(test_found_more)
     static const struct {
         const char *lamp;
         unsigned least, most;
-    } cases[] = {{BALL_LAMP("0.3", "30"), 1, 100000}, {BALL_LAMP("0.003", "300000"), 200000, 262144}};
+    } cases[] = {{BALL_LAMP("0.8", "4"), 1, 100000}, {BALL_LAMP("0.003", "300000"), 200000, 262144}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         char text[4096];
         snprintf(text, sizeof text,
@@ -335,6 +337,55 @@ START_TEST(test_found_more)
 }
 END_TEST
 
+/* How many photons are in each cell of the square that is lit through the pane in test_evenly, without its margin. */
+static void cells_count(const PhotonMap *map, int side, double *cells)
+{
+    for (uint i = 0; i < map->params.count; ++i) {
+        const uint *point = map->words + map->params.count + i * PHOTON_WORDS + PHOTON_POINT;
+        int x = (int)floor((0.2 + (double)bits_float(point[0])) / 2.4 * side);
+        int z = (int)floor((2.2 + (double)bits_float(point[2])) / 2.4 * side);
+        if (x >= 0 && x < side && z >= 0 && z < side)
+            cells[z * side + x] += 1.0;
+    }
+}
+
+/* Where light subpaths arrive often enough, photons are independent of each other, without clusters and gaps: of cells
+ * beside each other the squares of the differences are the sums, on average. */
+START_TEST(test_evenly)
+{
+    enum { SIDE = 16 };
+    static const char text[] =
+        BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 1 2 -1 ]\n" SMOOTH_GLASS
+                                  "Shape \"bilinearmesh\" \"point3 P\" [ 0 0.9 -2  2 0.9 -2  0 0.9 0  2 0.9 0 ]\n";
+    const RenderSetup setup = {.text = text, .threads = 2};
+    const RenderOptions options = {.samples = 1, .max_depth = 5, .seed = 3, .photons = 32768};
+    double cells[SIDE * SIDE] = {0}, squares = 0.0, sum = 0.0;
+    Scene scene;
+    Film film = {.threads = 2};
+    Error error = {0};
+    fixture_scene(&setup, &scene);
+    RenderRun run = {.interface = backend_cpu(),
+                     .backend = fixture_open(&setup, &scene, &error),
+                     .options = &options,
+                     .film = &film};
+    ck_assert(run.backend != NULL);
+    render_frame(integrator_pt(), &scene, &options, &run.frame);
+    ck_assert_msg(photon_map_make(&run, &scene, options.photons, &run.photons, &error), "%s", error.message);
+    cells_count(&run.photons, SIDE, cells);
+    for (int i = 0; i < SIDE * SIDE; i += 2) {
+        squares += pow(cells[i] - cells[i + 1], 2.0);
+        sum += cells[i] + cells[i + 1];
+    }
+    printf("%u photons, %.0f in the square, squares of differences %.2f\n", run.photons.params.count, sum,
+           squares / sum);
+    ck_assert_double_gt(sum, 20.0 * SIDE * SIDE);
+    TEST_NEAR(squares / sum, 1.0, 5.0 * sqrt(2.0 / (SIDE * SIDE / 2)));
+    photon_map_destroy(&run.photons);
+    run.interface->close(run.backend);
+    scene_destroy(&scene);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("caustic");
@@ -342,6 +393,7 @@ int main(void)
     TCase *search = tcase_create("search");
     tcase_add_test(search, test_found_among_many);
     tcase_add_test(search, test_found_more);
+    tcase_add_test(search, test_evenly);
     suite_add_tcase(suite, search);
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
