@@ -154,7 +154,8 @@ tests_test_archive_SOURCES = tests/base/test_archive.c
 tests_test_key_sort_SOURCES = tests/base/test_key_sort.c
 tests_test_light_guide_SOURCES = tests/light/test_light_guide.c
 tests_test_bench_SOURCES = tests/bench/test_bench.c
-tests_test_caustic_SOURCES = tests/path/test_caustic.c tests/path/test_caustic.h tests/path/test_caustic_photons.c
+tests_test_caustic_SOURCES = tests/path/test_caustic.c tests/path/test_caustic.h \
+	tests/path/test_caustic_photons.c tests/path/test_caustic_search.c
 tests_test_chain_population_SOURCES = tests/mmlt/test_chain_population.c
 tests_test_chain_seeds_SOURCES = tests/mmlt/test_chain_seeds.c
 tests_test_chain_statistics_SOURCES = tests/mmlt/test_chain_statistics.c

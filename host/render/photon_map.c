@@ -33,6 +33,9 @@ typedef struct PhotonMaker {
     PhotonSearch search;
     PhotonRecords records;
     uint traced; /* subpaths whose neighbours have been traced */
+    uint most; /* photons */
+    PhotonLimit limit;
+    void *context; /* of `limit` */
 } PhotonMaker;
 
 /* The next subpaths, whose neighbours are being traced. */
@@ -130,12 +133,17 @@ static bool has_records(const PhotonMaker *maker)
     return maker->records.count > 0 && maker->search.whole;
 }
 
+/* PhotonMap.number of the next map; 0 is none's. */
+static atomic_uint next_number = 1;
+
 /* Makes a map of all records. *missed: photon_grid_make; 0 if there can be none. */
 static bool map_fill(PhotonMaker *maker, PhotonMap *map, double *missed, Error *error)
 {
     *missed = 0.0;
     photon_map_destroy(map);
-    return !has_records(maker) || photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+    bool done = !has_records(maker) || photon_grid_make(&maker->records, &maker->lights, map, missed, error);
+    map->number = atomic_fetch_add(&next_number, 1);
+    return done;
 }
 
 /* *missed: photon_grid_missed of every PHOTONS_GROWTH-th record; 0 as above. */
@@ -167,10 +175,10 @@ static void missed_warn(const PhotonMap *map, uint count, double missed)
                 100.0 * missed, map->params.count, fix);
 }
 
-/* Makes a map of few photons, then of more until they are enough, `count` at most, or no more are found. */
-static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *error)
+/* Makes a map of few photons, then of more until they are enough, maker->most at most, or no more are found. */
+static bool maker_run(PhotonMaker *maker, PhotonMap *map, Error *error)
 {
-    const uint first = PHOTONS_FIRST < count ? PHOTONS_FIRST : count;
+    const uint first = PHOTONS_FIRST < maker->most ? PHOTONS_FIRST : maker->most;
     double missed = 0.0;
     for (uint wanted = first; wanted > 0;) {
         if (!records_make(maker, wanted, error) || (wanted == first && !missed_by_fewer(maker, &missed, error)))
@@ -178,26 +186,29 @@ static bool maker_run(PhotonMaker *maker, uint count, PhotonMap *map, Error *err
         const double by_fewer = missed;
         if (!map_fill(maker, map, &missed, error))
             return false;
-        if (wanted == count)
-            missed_warn(map, count, missed);
         const uint found = maker->search.found;
-        wanted = found < wanted ? 0 : photon_count_next(found, count, missed, by_fewer);
+        uint next = found < wanted ? 0 : photon_count_next(found, maker->most, missed, by_fewer);
+        if (next > 0 && wanted == first && maker->limit) {
+            if (!maker->limit(maker->context, &maker->most, error))
+                return false;
+            next = photon_count_next(found, maker->most, missed, by_fewer);
+        }
+        if (wanted == maker->most || found >= maker->most)
+            missed_warn(map, maker->most, missed);
+        wanted = next;
     }
     return true;
 }
 
-/* PhotonMap.number of the next map; 0 is none's. */
-static atomic_uint next_number = 1;
-
-bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error)
+bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonLimit limit, void *context,
+                     PhotonMap *map, Error *error)
 {
-    PhotonMaker maker = {0};
+    PhotonMaker maker = {.most = count, .limit = limit, .context = context};
     *map = (PhotonMap){0};
     if (count == 0 || !scene_has_delta(scene))
         return true;
-    bool done = maker_init(&maker, run, scene, count, error) &&
-                (maker.lights.aims.count == 0 || maker_run(&maker, count, map, error));
-    map->number = atomic_fetch_add(&next_number, 1);
+    bool done =
+        maker_init(&maker, run, scene, count, error) && (maker.lights.aims.count == 0 || maker_run(&maker, map, error));
     maker_destroy(&maker);
     return done;
 }

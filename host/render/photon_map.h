@@ -7,10 +7,14 @@
 #include "render/run.h"
 #include "scene/scene.h"
 
+/* Lowers *most, of how many photons there may be, by what the first few of them in the map bring. */
+typedef bool (*PhotonLimit)(void *context, uint *most, Error *error);
+
 /* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a
- * stop. Warns if as many as that predict their lights badly. run->frame must be complete but for `photons`. Call
- * photon_map_destroy even on failure. */
-bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonMap *map, Error *error);
+ * stop. limit: called before there are more than the first few; NULL: none. Warns if as many as that predict their
+ * lights badly. run->frame must be complete but for `photons`. Call photon_map_destroy even on failure. */
+bool photon_map_make(const RenderRun *run, const Scene *scene, uint count, PhotonLimit limit, void *context,
+                     PhotonMap *map, Error *error);
 void photon_map_destroy(PhotonMap *map);
 
 /* How many photons are to be made, at most `most`, when there are `found`, of whose predicted directions the part

@@ -15,6 +15,11 @@
 /* ... where this much of the mean of all paths counts as further light, so that dark paths do not decide. */
 #define WORTH_FLOOR 0.1
 
+/* A map has all photons that it may have if they bring this part, and otherwise one of so many: making them takes up to
+ * a third of the time that as many are for. */
+#define MANY_PART 0.05
+#define FEW_EVERY 8u
+
 /* The luminance of each path, by pixel: no two paths have the same. */
 typedef struct PathLight {
     pthread_mutex_t mutex;
@@ -85,6 +90,11 @@ bool photon_map_part(const RenderRun *run, double *part, Error *error)
     free(luminance[0]);
     free(luminance[1]);
     return done;
+}
+
+uint photon_map_most(uint most, double part)
+{
+    return part >= MANY_PART ? most : most / FEW_EVERY;
 }
 
 bool photon_map_worth(const PhotonMap *photons, double part)

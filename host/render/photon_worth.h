@@ -9,6 +9,9 @@
  * all backends, and for a crop as for the whole picture. Fails if the backend does or out of memory. */
 bool photon_map_part(const RenderRun *run, double *part, Error *error);
 
+/* How many photons may be made of `most`, if the first few bring this part: fewer if that is little. */
+uint photon_map_most(uint most, double part);
+
 /* Whether that is enough. True if there are no photons, or some are of lights without extent, which nothing else
  * finds. */
 bool photon_map_worth(const PhotonMap *photons, double part);

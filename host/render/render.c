@@ -294,13 +294,24 @@ bool render_openings_find(RenderRun *run, const Integrator *integrator, const Sc
     return openings_find(run, scene, error);
 }
 
+/* A PhotonLimit: few photons where they bring little. */
+static bool photons_limit(void *context, uint *most, Error *error)
+{
+    RenderRun *run = context;
+    if (!photon_map_part(run, &run->photons_part, error))
+        return false;
+    *most = photon_map_most(*most, run->photons_part);
+    return true;
+}
+
 bool render_photons_make(RenderRun *run, const Integrator *integrator, const Scene *scene, Error *error)
 {
+    const bool paths = integrator->strategies == STRATEGIES_PT;
+    const bool limited = !paths && run->options->photons == PHOTONS_DEFAULT;
     if (!run->resumed)
         run->past.photons = render_photons(integrator, run->options, run->crop_pixels);
-    if (!photon_map_make(run, scene, run->past.photons, &run->photons, error))
+    if (!photon_map_make(run, scene, run->past.photons, limited ? photons_limit : NULL, run, &run->photons, error))
         return false;
-    const bool paths = integrator->strategies == STRATEGIES_PT;
     run->photons.params.everywhere = paths;
     bool asked_for = run->options->photons != PHOTONS_DEFAULT || run->resumed;
     if (!paths && !photon_map_part(run, &run->photons_part, error))

@@ -5,9 +5,7 @@
 #include "support/bidirectional.h"
 #include "support/test_files.h"
 
-#include "backend_cpu.h"
 #include "mmlt/combination.h"
-#include "render/photon_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,16 +14,11 @@
 
 /* ---- the same picture with and without --------------------------------------------------------------------------- */
 
-#define SMOOTH_GLASS "Material \"dielectric\" \"float eta\" 1.5\n"
 #define BEADS                                                                                                          \
     SMOOTH_GLASS "AttributeBegin Translate -1 -0.4 0.2 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"           \
                  "AttributeBegin Translate 0.9 -0.5 -0.6 Shape \"sphere\" \"float radius\" 0.45 AttributeEnd\n"        \
                  "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.6 ] \"float roughness\" 0\n"                  \
                  "AttributeBegin Translate 0 -0.3 1.2 Shape \"sphere\" \"float radius\" 0.6 AttributeEnd\n"
-#define BALL_LAMP(radius, L)                                                                                           \
-    "AttributeBegin Translate 1 2 -1 AreaLightSource \"diffuse\" \"rgb L\" [ " L " " L " " L                           \
-    " ] Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ] Shape \"sphere\" \"float radius\" " radius                  \
-    " AttributeEnd\n"
 #define WALL "Shape \"bilinearmesh\" \"point3 P\" [ -4 -1 2  4 -1 2  -4 3 2  4 3 2 ]\n"
 #define WATER SMOOTH_GLASS "Shape \"bilinearmesh\" \"point3 P\" [ -9 0.9 -9  9 0.9 -9  -9 0.8 9  9 0.8 9 ]\n"
 #define WIDE_SUN                                                                                                       \
@@ -274,11 +267,7 @@ START_TEST(test_found)
     static const char *const LIGHTS[] = {POINT, BALL_LAMP("0.1", "300"), DISTANT, WIDE_SUN};
     for (size_t i = 0; i < sizeof LIGHTS / sizeof LIGHTS[0]; ++i) {
         char text[4096];
-        snprintf(text, sizeof text,
-                 BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS
-                                           "AttributeBegin Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.15 "
-                                           "AttributeEnd\n",
-                 LIGHTS[i]);
+        snprintf(text, sizeof text, BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS LITTLE_BEAD, LIGHTS[i]);
         const BidirectionalScene scene = {"bead", text, SUPPORT_SUM_ONLY, 6, 2};
         const RenderSetup setup = {.text = bidirectional_text(&scene), .samples = 1, .threads = 1, .photons = 32768};
         RenderedImage image;
@@ -290,111 +279,11 @@ START_TEST(test_found)
 }
 END_TEST
 
-/* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every
- * bead by itself. */
-START_TEST(test_found_among_many)
-{
-    enum { COUNT = 64 };
-    char text[16384] = BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 0 1 0 ]\n" SMOOTH_GLASS;
-    size_t used = strlen(text);
-    for (int i = 0; i < COUNT; ++i)
-        used +=
-            (size_t)snprintf(text + used, sizeof text - used,
-                             "AttributeBegin Translate %g %g %g Shape \"sphere\" \"float radius\" 0.002 AttributeEnd\n",
-                             0.4 * (i % 8) - 1.4, 0.1 * (i * 3 % 7) - 0.3, 0.4 * (i / 8) - 1.4);
-    const RenderSetup setup = {.text = text, .samples = 1, .threads = 1, .photons = 32768};
-    RenderedImage image;
-    fixture_render(&setup, &image);
-    printf("many beads: %u photons\n", image.result.photons);
-    ck_assert_uint_gt(image.result.photons, setup.photons / 4);
-    fixture_destroy(&image);
-}
-END_TEST
-
-/* More photons are made only where they predict better: of a bead's caustic those of a small lamp do, those of a large
- * one hit it anyway. */
-START_TEST(test_found_more)
-{
-    static const struct {
-        const char *lamp;
-        unsigned least, most;
-    } cases[] = {{BALL_LAMP("0.8", "4"), 1, 100000}, {BALL_LAMP("0.003", "300000"), 200000, 262144}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
-        char text[4096];
-        snprintf(text, sizeof text,
-                 BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS
-                                           "AttributeBegin Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.15 "
-                                           "AttributeEnd\n",
-                 cases[i].lamp);
-        const RenderSetup setup = {.text = text, .samples = 1, .threads = 2, .photons = 262144};
-        RenderedImage image;
-        fixture_render(&setup, &image);
-        printf("lamp %zu: %u photons\n", i, image.result.photons);
-        ck_assert_uint_ge(image.result.photons, cases[i].least);
-        ck_assert_uint_le(image.result.photons, cases[i].most);
-        fixture_destroy(&image);
-    }
-}
-END_TEST
-
-/* How many photons are in each cell of the square that is lit through the pane in test_evenly, without its margin. */
-static void cells_count(const PhotonMap *map, int side, double *cells)
-{
-    for (uint i = 0; i < map->params.count; ++i) {
-        const uint *point = map->words + map->params.count + i * PHOTON_WORDS + PHOTON_POINT;
-        int x = (int)floor((0.2 + (double)bits_float(point[0])) / 2.4 * side);
-        int z = (int)floor((2.2 + (double)bits_float(point[2])) / 2.4 * side);
-        if (x >= 0 && x < side && z >= 0 && z < side)
-            cells[z * side + x] += 1.0;
-    }
-}
-
-/* Where light subpaths arrive often enough, photons are independent of each other, without clusters and gaps: of cells
- * beside each other the squares of the differences are the sums, on average. */
-START_TEST(test_evenly)
-{
-    enum { SIDE = 16 };
-    static const char text[] =
-        BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 1 2 -1 ]\n" SMOOTH_GLASS
-                                  "Shape \"bilinearmesh\" \"point3 P\" [ 0 0.9 -2  2 0.9 -2  0 0.9 0  2 0.9 0 ]\n";
-    const RenderSetup setup = {.text = text, .threads = 2};
-    const RenderOptions options = {.samples = 1, .max_depth = 5, .seed = 3, .photons = 32768};
-    double cells[SIDE * SIDE] = {0}, squares = 0.0, sum = 0.0;
-    Scene scene;
-    Film film = {.threads = 2};
-    Error error = {0};
-    fixture_scene(&setup, &scene);
-    RenderRun run = {.interface = backend_cpu(),
-                     .backend = fixture_open(&setup, &scene, &error),
-                     .options = &options,
-                     .film = &film};
-    ck_assert(run.backend != NULL);
-    render_frame(integrator_pt(), &scene, &options, &run.frame);
-    ck_assert_msg(photon_map_make(&run, &scene, options.photons, &run.photons, &error), "%s", error.message);
-    cells_count(&run.photons, SIDE, cells);
-    for (int i = 0; i < SIDE * SIDE; i += 2) {
-        squares += pow(cells[i] - cells[i + 1], 2.0);
-        sum += cells[i] + cells[i + 1];
-    }
-    printf("%u photons, %.0f in the square, squares of differences %.2f\n", run.photons.params.count, sum,
-           squares / sum);
-    ck_assert_double_gt(sum, 20.0 * SIDE * SIDE);
-    TEST_NEAR(squares / sum, 1.0, 5.0 * sqrt(2.0 / (SIDE * SIDE / 2)));
-    photon_map_destroy(&run.photons);
-    run.interface->close(run.backend);
-    scene_destroy(&scene);
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("caustic");
     suite_add_tcase(suite, photons_case());
-    TCase *search = tcase_create("search");
-    tcase_add_test(search, test_found_among_many);
-    tcase_add_test(search, test_found_more);
-    tcase_add_test(search, test_evenly);
-    suite_add_tcase(suite, search);
+    suite_add_tcase(suite, search_case());
     TCase *pictures = tcase_create("pictures");
     tcase_add_unchecked_fixture(pictures, bidirectional_files_make, bidirectional_files_remove);
     tcase_set_timeout(pictures, 300);

@@ -1,0 +1,160 @@
+/* The search for caustic photons: how many are found, by what it aims at, and how evenly. */
+#include "path/test_caustic.h"
+
+#include "support/bidirectional.h"
+#include "support/test_util.h"
+
+#include "backend_cpu.h"
+#include "render/photon_map.h"
+#include "render/photon_worth.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every
+ * bead by itself. */
+START_TEST(test_found_among_many)
+{
+    enum { COUNT = 64 };
+    char text[16384] = BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 0 1 0 ]\n" SMOOTH_GLASS;
+    size_t used = strlen(text);
+    for (int i = 0; i < COUNT; ++i)
+        used +=
+            (size_t)snprintf(text + used, sizeof text - used,
+                             "AttributeBegin Translate %g %g %g Shape \"sphere\" \"float radius\" 0.002 AttributeEnd\n",
+                             0.4 * (i % 8) - 1.4, 0.1 * (i * 3 % 7) - 0.3, 0.4 * (i / 8) - 1.4);
+    const RenderSetup setup = {.text = text, .samples = 1, .threads = 1, .photons = 32768};
+    RenderedImage image;
+    fixture_render(&setup, &image);
+    printf("many beads: %u photons\n", image.result.photons);
+    ck_assert_uint_gt(image.result.photons, setup.photons / 4);
+    fixture_destroy(&image);
+}
+END_TEST
+
+/* More photons are made only where they predict better: of a bead's caustic those of a small lamp do, those of a large
+ * one hit it anyway. */
+START_TEST(test_found_more)
+{
+    static const struct {
+        const char *lamp;
+        unsigned least, most;
+    } cases[] = {{BALL_LAMP("0.8", "4"), 1, 100000}, {BALL_LAMP("0.003", "300000"), 200000, 262144}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char text[4096];
+        snprintf(text, sizeof text, BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS LITTLE_BEAD, cases[i].lamp);
+        const RenderSetup setup = {.text = text, .samples = 1, .threads = 2, .photons = 262144};
+        RenderedImage image;
+        fixture_render(&setup, &image);
+        printf("lamp %zu: %u photons\n", i, image.result.photons);
+        ck_assert_uint_ge(image.result.photons, cases[i].least);
+        ck_assert_uint_le(image.result.photons, cases[i].most);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
+/* The photons of a scene, of a seed. */
+static void photons_make(const char *text, uint count, PhotonLimit limit, void *context, PhotonMap *map)
+{
+    const RenderSetup setup = {.text = text, .threads = 2};
+    const RenderOptions options = {.samples = 1, .max_depth = 5, .seed = 3};
+    Film film = {.threads = 2};
+    Scene scene;
+    Error error = {0};
+    fixture_scene(&setup, &scene);
+    RenderRun run = {.interface = backend_cpu(),
+                     .backend = fixture_open(&setup, &scene, &error),
+                     .options = &options,
+                     .film = &film};
+    ck_assert(run.backend != NULL);
+    render_frame(integrator_pt(), &scene, &options, &run.frame);
+    bool made = photon_map_make(&run, &scene, count, limit, context, map, &error);
+    ck_assert_msg(made, "%s", error.message);
+    run.interface->close(run.backend);
+    scene_destroy(&scene);
+}
+
+/* A PhotonLimit of 100000; *context: how often it was asked for. */
+static bool limit_set(void *context, uint *most, Error *error)
+{
+    (void)error;
+    ++*(int *)context;
+    *most = 100000;
+    return true;
+}
+
+/* What the first few photons bring is asked for once, before there are more, and limits them; not where they are all
+ * that there may be, or enough. */
+START_TEST(test_limit)
+{
+    static const struct {
+        const char *lamp;
+        uint count;
+        int asked;
+        uint least, most;
+    } cases[] = {{BALL_LAMP("0.003", "300000"), 262144, 1, 90000, 170000},
+                 {BALL_LAMP("0.003", "300000"), 32768, 0, 32000, 32768},
+                 {BALL_LAMP("0.8", "4"), 262144, 0, 1, 100000}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char text[4096];
+        int asked = 0;
+        PhotonMap map;
+        snprintf(text, sizeof text, BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS LITTLE_BEAD, cases[i].lamp);
+        photons_make(text, cases[i].count, limit_set, &asked, &map);
+        printf("case %zu: %u photons\n", i, map.params.count);
+        ck_assert_int_eq(asked, cases[i].asked);
+        ck_assert_uint_ge(map.params.count, cases[i].least);
+        ck_assert_uint_le(map.params.count, cases[i].most);
+        photon_map_destroy(&map);
+    }
+    ck_assert_uint_eq(photon_map_most(655360, 0.06), 655360);
+    ck_assert_uint_eq(photon_map_most(655360, 0.04), 81920);
+}
+END_TEST
+
+/* How many photons are in each cell of the square that is lit through the pane in test_evenly, without its margin. */
+static void cells_count(const PhotonMap *map, int side, double *cells)
+{
+    for (uint i = 0; i < map->params.count; ++i) {
+        const uint *point = map->words + map->params.count + i * PHOTON_WORDS + PHOTON_POINT;
+        int x = (int)floor((0.2 + (double)bits_float(point[0])) / 2.4 * side);
+        int z = (int)floor((2.2 + (double)bits_float(point[2])) / 2.4 * side);
+        if (x >= 0 && x < side && z >= 0 && z < side)
+            cells[z * side + x] += 1.0;
+    }
+}
+
+/* Where light subpaths arrive often enough, photons are independent of each other, without clusters and gaps: of cells
+ * beside each other the squares of the differences are the sums, on average. */
+START_TEST(test_evenly)
+{
+    enum { SIDE = 16 };
+    static const char text[] =
+        BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 1 2 -1 ]\n" SMOOTH_GLASS
+                                  "Shape \"bilinearmesh\" \"point3 P\" [ 0 0.9 -2  2 0.9 -2  0 0.9 0  2 0.9 0 ]\n";
+    double cells[SIDE * SIDE] = {0}, squares = 0.0, sum = 0.0;
+    PhotonMap map;
+    photons_make(text, 32768, NULL, NULL, &map);
+    cells_count(&map, SIDE, cells);
+    for (int i = 0; i < SIDE * SIDE; i += 2) {
+        squares += pow(cells[i] - cells[i + 1], 2.0);
+        sum += cells[i] + cells[i + 1];
+    }
+    printf("%u photons, %.0f in the square, squares of differences %.2f\n", map.params.count, sum, squares / sum);
+    ck_assert_double_gt(sum, 20.0 * SIDE * SIDE);
+    TEST_NEAR(squares / sum, 1.0, 5.0 * sqrt(2.0 / (SIDE * SIDE / 2)));
+    photon_map_destroy(&map);
+}
+END_TEST
+
+TCase *search_case(void)
+{
+    TCase *search = tcase_create("search");
+    tcase_add_test(search, test_found_among_many);
+    tcase_add_test(search, test_found_more);
+    tcase_add_test(search, test_limit);
+    tcase_add_test(search, test_evenly);
+    return search;
+}
