@@ -7,7 +7,7 @@
 #include "render/run.h"
 #include "scene/scene.h"
 
-/* Lowers *most, of how many photons there may be, by what the first few of them in the map bring. */
+/* May lower *most, the number of photons that a map may have, according to what its first few photons bring. */
 typedef bool (*PhotonLimit)(void *context, uint *most, Error *error);
 
 /* Fills *map with up to `count` photons; none if the scene has no smooth specular surface, if none arrive, or on a

@@ -1,6 +1,6 @@
-/* Finds light subpaths that arrive at a receiver through smooth specular surfaces. They are drawn from the lights, half of
- * them aimed at such surfaces; where too few of these arrive, more are drawn between those that have: they need no known
- * density (path/caustic_rest.h), and most of them arrive, but they make clusters of photons, and gaps. */
+/* Finds light subpaths that arrive at a receiver through smooth specular surfaces. They are drawn from the lights, half
+ * of them aimed at such surfaces; where too few of these arrive, more are drawn between those that have: they need no
+ * known density (path/caustic_rest.h), and most of them arrive, but they make clusters of photons, and gaps. */
 #ifndef TWINLIGHT_RENDER_PHOTON_PATHS_H
 #define TWINLIGHT_RENDER_PHOTON_PATHS_H
 

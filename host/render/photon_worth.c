@@ -15,8 +15,8 @@
 /* ... where this much of the mean of all paths counts as further light, so that dark paths do not decide. */
 #define WORTH_FLOOR 0.1
 
-/* A map has all photons that it may have if they bring this part, and otherwise one of so many: making them takes up to
- * a third of the time that as many are for. */
+/* A map may have all photons that were asked for if the first ones bring this part, and otherwise one of FEW_EVERY: for
+ * the number that a rendering's time allows, making them takes up to a quarter of that time. */
 #define MANY_PART 0.05
 #define FEW_EVERY 8u
 
