@@ -114,6 +114,34 @@ START_TEST(test_limit)
 }
 END_TEST
 
+/* By default mmlt limits them so: its 147456 photons for so many samples are too many for a bead of which little is
+ * seen; not if they are asked for. */
+START_TEST(test_default_limit)
+{
+    static const char text[] =
+        BD_BEGIN BD_GREY BD_FLOOR "LightSource \"point\" \"point3 from\" [ 1 2 -1 ]\n" SMOOTH_GLASS LITTLE_BEAD;
+    static const struct {
+        unsigned photons, least, most;
+    } cases[] = {{PHOTONS_DEFAULT, 1, 100000}, {147456, 130000, 147456}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const RenderSetup setup = {.text = text,
+                                   .samples = 256,
+                                   .max_depth = 4,
+                                   .threads = 2,
+                                   .width = 96,
+                                   .height = 96,
+                                   .photons = cases[i].photons,
+                                   .integrator = integrator_mmlt()};
+        RenderedImage image;
+        fixture_render(&setup, &image);
+        printf("case %zu: %u photons\n", i, image.result.photons);
+        ck_assert_uint_ge(image.result.photons, cases[i].least);
+        ck_assert_uint_le(image.result.photons, cases[i].most);
+        fixture_destroy(&image);
+    }
+}
+END_TEST
+
 /* How many photons are in each cell of the square that is lit through the pane in test_evenly, without its margin. */
 static void cells_count(const PhotonMap *map, int side, double *cells)
 {
@@ -152,9 +180,11 @@ END_TEST
 TCase *search_case(void)
 {
     TCase *search = tcase_create("search");
+    tcase_set_timeout(search, 300);
     tcase_add_test(search, test_found_among_many);
     tcase_add_test(search, test_found_more);
     tcase_add_test(search, test_limit);
+    tcase_add_test(search, test_default_limit);
     tcase_add_test(search, test_evenly);
     return search;
 }
