@@ -231,16 +231,18 @@ static void reach_set(PhotonLights *lights)
 {
     const SceneView *view = &lights->view;
     const SceneParams *scene = &view->frame->scene;
-    double world = (double)scene->world_radius, least = POINT_STEP_ULPS * (double)FLOAT_EPSILON * world,
-           nearest = world;
-    Vec3 center = smooth_boxes_center(&lights->aims);
+    double world = (double)scene->world_radius, least = POINT_STEP_ULPS * (double)FLOAT_EPSILON, nearest = world;
+    const double at_surfaces = (double)vec3_length(lights->center) + 2.0 * lights->radius;
     for (uint i = 0; i < scene->light_count; ++i) {
         const Light *light = &view->lights[i];
-        double reach = smooth_boxes_radius(&lights->aims);
-        if (!photon_light_is_far(lights, i))
-            reach += (double)vec3_length(vec3_sub(light_place(view, light), center));
+        const bool far = photon_light_is_far(lights, i);
+        double reach = lights->radius;
+        if (!far)
+            reach += (double)vec3_length(vec3_sub(light_place(view, light), lights->center));
         reach = fmin(reach, world);
-        lights->step[i] = fmax(POINT_STEP * reach, least);
+        const double smallest = least * (far ? at_surfaces : world);
+        lights->place_step[i] = fmax(POINT_STEP * lights->radius, smallest);
+        lights->light_step[i] = far ? DIRECTION_STEP : fmax(POINT_STEP * reach, smallest);
         if (light_has_position(light_kind(light)))
             nearest = fmin(nearest, reach);
     }
@@ -252,13 +254,15 @@ bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
     const BackendScene packed = scene_backend_view(scene);
     uint count = packed.frame->scene.light_count;
     *lights = (PhotonLights){.view = scene_view(packed.frame, packed.geometry, packed.tables, packed.texels),
-                             .params.distant_sine = DISTANT_SINE,
-                             .direction_step = DIRECTION_STEP};
-    lights->step = calloc(count + 1, sizeof *lights->step);
-    if (!lights->step)
-        return error_memory(error, count * sizeof *lights->step, "lights");
+                             .params.distant_sine = DISTANT_SINE};
+    lights->place_step = calloc(count + 1, sizeof *lights->place_step);
+    lights->light_step = calloc(count + 1, sizeof *lights->light_step);
+    if (!lights->place_step || !lights->light_step)
+        return error_memory(error, count * (sizeof *lights->place_step + sizeof *lights->light_step), "lights");
     if (!smooth_boxes_init(&lights->aims, scene, &lights->view, error))
         return false;
+    lights->center = smooth_boxes_center(&lights->aims);
+    lights->radius = smooth_boxes_radius(&lights->aims);
     reach_set(lights);
     return lamps_set(lights, scene->shapes.count, error) && spots_find(lights, error);
 }
@@ -266,7 +270,8 @@ bool photon_lights_init(PhotonLights *lights, const Scene *scene, Error *error)
 void photon_lights_destroy(PhotonLights *lights)
 {
     free(lights->lamps);
-    free(lights->step);
+    free(lights->place_step);
+    free(lights->light_step);
     smooth_boxes_destroy(&lights->aims);
     *lights = (PhotonLights){0};
 }

@@ -27,12 +27,15 @@ typedef struct LightSpot {
 typedef struct PhotonLights {
     SceneView view;
     SmoothBoxes aims;
+    Vec3 center; /* of a sphere around them */
+    double radius;
     PhotonParams params; /* the radii of lights of no extent */
     LampExtent *lamps; /* one per shape */
     LightSpot spots[LIGHT_SPOTS];
     uint spot_count;
-    double *step; /* between the origins of neighbouring subpaths, one per light */
-    double direction_step; /* between their directions */
+    /* Between neighbouring subpaths, one per light: places where they meet the specular surfaces, and points of the light
+     * or, from infinity, directions. */
+    double *place_step, *light_step;
 } PhotonLights;
 
 /* Call photon_lights_destroy even on failure. */

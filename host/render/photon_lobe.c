@@ -8,22 +8,54 @@
  * outside unless the ray grazes the surface. */
 #define STEPS_AHEAD 4.0f
 
+/* How many radii of the sphere of specular surfaces neighbours at infinity begin before its middle. */
+#define FAR_START 2.0
+
 /* Added to squared lengths where neighbours fall (almost) on one line, relative to them: near a focus a photon predicts
  * nothing but its own direction. */
 #define FLAT_PART 1e-6
 
-PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, uint k)
+/* A place of a path's first ray among the specular surfaces: closest to their middle, or beyond it if they surround the
+ * light. */
+static Vec3 path_place(const PhotonLights *lights, const PhotonPath *path)
+{
+    float along = vec3_dot(vec3_sub(lights->center, path->origin), path->first);
+    return vec3_mad(path->origin, float_max(along, (float)lights->radius), path->first);
+}
+
+/* From infinity. The neighbour begins just outside the sphere of specular surfaces, since nothing stands in between: from
+ * where its path begins, outside the world, another direction would miss small surfaces. */
+static PhotonPath far_neighbour(const PhotonLights *lights, const PhotonPath *path, bool other_point, Vec3 axis)
 {
     PhotonPath neighbour = *path;
+    Vec3 place = path_place(lights, path);
+    if (other_point)
+        neighbour.first = vec3_normalize(vec3_mad(path->first, (float)lights->light_step[path->light], axis));
+    else
+        place = vec3_mad(place, (float)lights->place_step[path->light], axis);
+    neighbour.origin = vec3_mad(place, (float)(-FAR_START * lights->radius), neighbour.first);
+    return neighbour;
+}
+
+/* From a lamp. */
+static PhotonPath near_neighbour(const PhotonLights *lights, const PhotonPath *path, bool other_point, Vec3 axis)
+{
+    PhotonPath neighbour = *path;
+    Vec3 place = path_place(lights, path);
+    if (other_point)
+        neighbour.origin =
+            vec3_mad(path->origin, (float)lights->light_step[path->light], vec3_mad(axis, STEPS_AHEAD, path->first));
+    else
+        place = vec3_mad(place, (float)lights->place_step[path->light], axis);
+    neighbour.first = vec3_normalize(vec3_sub(place, neighbour.origin));
+    return neighbour;
+}
+
+PhotonPath photon_neighbour(const PhotonLights *lights, const PhotonPath *path, uint k)
+{
     Frame frame = frame_from_normal(path->first);
     Vec3 axis = k % 2u == 0u ? frame.t : frame.b;
-    bool other_point = k >= 2u;
-    if (other_point != photon_light_is_far(lights, path->light))
-        neighbour.origin = vec3_mad(path->origin, (float)lights->step[path->light],
-                                    other_point ? vec3_mad(axis, STEPS_AHEAD, path->first) : axis);
-    else
-        neighbour.first = vec3_normalize(vec3_mad(path->first, (float)lights->direction_step, axis));
-    return neighbour;
+    return (photon_light_is_far(lights, path->light) ? far_neighbour : near_neighbour)(lights, path, k >= 2u, axis);
 }
 
 bool photon_slopes(Vec3 direction, Vec3 w, double slopes[2])
@@ -129,7 +161,7 @@ bool photon_differences(const PhotonLights *lights, const PhotonPath *path,
         return false;
     /* Neighbours through other points of the light have arrived at other places. */
     multiply(record->by_place, places[1], across);
-    double step = far ? lights->direction_step : lights->step[path->light];
+    double step = lights->light_step[path->light];
     bool finite = true;
     for (int i = 0; i < 4; ++i) {
         record->by_light[i] = (slopes[1][i] - across[i]) / step;

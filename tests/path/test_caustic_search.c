@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define WIDE_FLOOR "Shape \"bilinearmesh\" \"point3 P\" [ -300 -2 -300  300 -2 -300  -300 -2 300  300 -2 300 ]\n"
+
 /* Tiny beads, so many that the spheres of light/aim.h hold several each, which are far apart: the search aims at every
  * bead by itself. */
 START_TEST(test_found_among_many)
@@ -142,6 +144,34 @@ START_TEST(test_default_limit)
 }
 END_TEST
 
+/* Nearly all subpaths that arrive become photons, however wide the world or distant the lamp: those of the sun begin far
+ * outside, and neighbours in other directions must still meet the bead. */
+START_TEST(test_wide_world)
+{
+    static const struct {
+        const char *light, *world;
+    } cases[] = {
+        {"LightSource \"distant\" \"point3 from\" [ 0.3 1 0.2 ]\n", ""},
+        {"LightSource \"distant\" \"point3 from\" [ 0.3 1 0.2 ]\n", WIDE_FLOOR},
+        {"LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", ""},
+        {"LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", WIDE_FLOOR},
+        {"AttributeBegin Translate 300 1000 200 AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n"
+         "Shape \"sphere\" \"float radius\" 3 AttributeEnd\n",
+         ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char text[4096];
+        PhotonMap map;
+        snprintf(text, sizeof text, BD_BEGIN BD_GREY BD_FLOOR "%s%s" SMOOTH_GLASS LITTLE_BEAD, cases[i].light,
+                 cases[i].world);
+        photons_make(text, 32768, NULL, NULL, &map);
+        printf("case %zu: %u photons\n", i, map.params.count);
+        ck_assert_uint_ge(map.params.count, 19000);
+        photon_map_destroy(&map);
+    }
+}
+END_TEST
+
 /* How many photons are in each cell of the square that is lit through the pane in test_evenly, without its margin. */
 static void cells_count(const PhotonMap *map, int side, double *cells)
 {
@@ -185,6 +215,7 @@ TCase *search_case(void)
     tcase_add_test(search, test_found_more);
     tcase_add_test(search, test_limit);
     tcase_add_test(search, test_default_limit);
+    tcase_add_test(search, test_wide_world);
     tcase_add_test(search, test_evenly);
     return search;
 }
