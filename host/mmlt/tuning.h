@@ -39,7 +39,7 @@
 #define SHIFTS 0.75f
 
 /* Most photons, up to PHOTONS_MOST_ALLOWED, if so many predict better than fewer (render/photon_map.c): more cost
- * memory (64 bytes each) and time before the first sample, fewer predict directions less well. On two cores as many as
+ * memory (60 bytes each) and time before the first sample, fewer predict directions less well. On two cores as many as
  * a second brings take .1 to .2 s. */
 #define MMLT_PHOTONS_MIN 32768u
 #define MMLT_PHOTONS_PER_SECOND 32768.0

@@ -27,6 +27,9 @@
 /* Kinds of photons that are counted; more are in the last group. */
 #define KINDS_MAX 64u
 
+/* Of the grid around the photons, relative to their extent: by rounding, places on their surfaces are outside it. */
+#define GRID_MARGIN 1e-3f
+
 /* Photons in an occupied cell of the coarsest level that is used, on average. */
 #define CELL_PHOTONS 8u
 
@@ -41,19 +44,22 @@ typedef struct GridKind {
     uint light, vertices, lobes, count;
 } GridKind;
 
+/* Bits of a code. */
+#define CODE_BITS (3u * PHOTON_LEVELS)
+
 static uint entry_group(const GridEntry *entry)
 {
-    return (uint)(entry->key >> 32u);
+    return (uint)(entry->key >> CODE_BITS);
 }
 
-static uint entry_code(const GridEntry *entry)
+static uint64_t entry_code(const GridEntry *entry)
 {
-    return (uint)entry->key;
+    return entry->key & (((uint64_t)1 << CODE_BITS) - 1);
 }
 
 static void entry_set_group(GridEntry *entry, uint group)
 {
-    entry->key = (uint64_t)group << 32u | entry_code(entry);
+    entry->key = (uint64_t)group << CODE_BITS | entry_code(entry);
 }
 
 void photon_grid_bounds(const Vec3 *first, size_t stride, uint count, PhotonParams *params)
@@ -65,7 +71,7 @@ void photon_grid_bounds(const Vec3 *first, size_t stride, uint count, PhotonPara
         high = vec3(float_max(high.x, p.x), float_max(high.y, p.y), float_max(high.z, p.z));
     }
     float side = float_max(vec3_max_component(vec3_sub(high, low)), 1e-6f * (1.0f + vec3_length(high)));
-    float margin = side / (float)PHOTON_CELLS;
+    float margin = GRID_MARGIN * side;
     params->origin = vec3_sub(low, vec3_splat(margin));
     params->cells_per_unit = (float)PHOTON_CELLS / (side + 3.0f * margin);
 }
@@ -224,16 +230,24 @@ static void vector_put(uint *words, Vec3 v)
     words[2] = float_bits(v.z);
 }
 
+/* Two numbers in a word, for photon_pair. */
+static uint pair_put(const double numbers[2])
+{
+    const uint half = 0x8000u; /* rounds to the nearest */
+    return ((float_bits((float)numbers[0]) + half) & 0xffff0000u) | (float_bits((float)numbers[1]) + half) >> 16;
+}
+
 static void words_fill(const GridEntry *entries, uint count, uint *words)
 {
     for (uint i = 0; i < count; ++i) {
         const PhotonRecord *record = entries[i].item;
-        uint *photon = words + count + (size_t)i * PHOTON_WORDS;
-        words[i] = entry_code(&entries[i]);
+        uint *photon = words + PHOTON_CODE_WORDS * (size_t)count + (size_t)i * PHOTON_WORDS;
+        words[PHOTON_CODE_WORDS * (size_t)i] = (uint)entry_code(&entries[i]);
+        words[PHOTON_CODE_WORDS * (size_t)i + 1] = (uint)(entry_code(&entries[i]) >> 32u);
         vector_put(photon + PHOTON_POINT, record->point);
         vector_put(photon + PHOTON_DIRECTION, record->direction);
-        for (int k = 0; k < 4; ++k)
-            photon[PHOTON_BY_PLACE + (uint)k] = float_bits((float)record->by_place[k]);
+        for (int row = 0; row < 2; ++row)
+            photon[PHOTON_BY_PLACE + (uint)row] = pair_put(record->by_place + 2 * row);
         for (int k = 0; k < 3; ++k)
             photon[PHOTON_SPREAD + (uint)k] = float_bits((float)record->spread[k]);
         photon[PHOTON_LIGHT] = record->light;
@@ -265,7 +279,7 @@ static size_t directories_place(PhotonParams *params)
            groups * (((size_t)8 << 3u * params->directory_level) + 1) <= params->count)
         ++params->directory_level;
     for (uint g = 0; g < PHOTON_GROUPS && params->directory_level > 0; ++g) {
-        params->directory[g] = (uint)((size_t)params->count * (1 + PHOTON_WORDS) + words);
+        params->directory[g] = (uint)((size_t)params->count * (PHOTON_CODE_WORDS + PHOTON_WORDS) + words);
         if (params->first[g] < params->first[g + 1])
             words += ((size_t)1 << 3u * params->directory_level) + 1;
     }
@@ -279,7 +293,7 @@ static void directories_fill(const PhotonParams *params, uint *words)
         const uint first = params->first[g], end = params->first[g + 1];
         uint photon = first;
         for (uint cell = 0; first < end && cell <= cells; ++cell) {
-            while (photon < end && words[photon] >> shift < cell)
+            while (photon < end && photon_code_at(words, photon) >> shift < cell)
                 ++photon;
             words[params->directory[g] + cell] = photon;
         }
@@ -340,7 +354,7 @@ bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, Photon
         return true;
     }
     groups_set(entries, &map->params);
-    map->word_count = (size_t)count * (1 + PHOTON_WORDS) + directories_place(&map->params);
+    map->word_count = (size_t)count * (PHOTON_CODE_WORDS + PHOTON_WORDS) + directories_place(&map->params);
     size_t bytes = map->word_count * sizeof *map->words;
     map->words = malloc(bytes);
     if (map->words) {

@@ -38,8 +38,8 @@
 #define SPOT_POINTS 32u
 #define SPOT_RADIUS_MAX 0.05
 
-/* Squared distance from a spot's middle up to which directions are its own, in units of its variance: the edge of a disc
- * is at 4. */
+/* Squared distance from a spot's middle up to which directions are its own, in units of its variance: the edge of a
+ * disc is at 4. */
 #define SPOT_REACH 6.0
 
 /* Estimates of a spot's radius, each by the one before. */

@@ -33,8 +33,8 @@ typedef struct PhotonLights {
     LampExtent *lamps; /* one per shape */
     LightSpot spots[LIGHT_SPOTS];
     uint spot_count;
-    /* Between neighbouring subpaths, one per light: places where they meet the specular surfaces, and points of the light
-     * or, from infinity, directions. */
+    /* Between neighbouring subpaths, one per light: places where they meet the specular surfaces, and points of the
+     * light or, from infinity, directions. */
     double *place_step, *light_step;
 } PhotonLights;
 

@@ -23,8 +23,8 @@ static Vec3 path_place(const PhotonLights *lights, const PhotonPath *path)
     return vec3_mad(path->origin, float_max(along, (float)lights->radius), path->first);
 }
 
-/* From infinity. The neighbour begins just outside the sphere of specular surfaces, since nothing stands in between: from
- * where its path begins, outside the world, another direction would miss small surfaces. */
+/* From infinity. The neighbour begins just outside the sphere of specular surfaces, since nothing stands in between:
+ * from where its path begins, outside the world, another direction would miss small surfaces. */
 static PhotonPath far_neighbour(const PhotonLights *lights, const PhotonPath *path, bool other_point, Vec3 axis)
 {
     PhotonPath neighbour = *path;

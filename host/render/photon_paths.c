@@ -68,6 +68,11 @@ static bool search_lights(PhotonSearch *search, uint wanted, Error *error)
     return true;
 }
 
+static const PhotonPath *order_path(const PhotonSearch *search, uint at)
+{
+    return search->order[at].item;
+}
+
 /* Sorts the paths that have arrived by their light, and then by the Morton code of the place. */
 static bool search_order(PhotonSearch *search, Error *error)
 {
@@ -75,16 +80,14 @@ static bool search_order(PhotonSearch *search, Error *error)
     photon_grid_bounds(&search->paths[0].point, sizeof *search->paths, search->found, &params);
     for (uint i = 0; i < search->found; ++i) {
         PhotonPath *path = &search->paths[i];
-        search->order[i] = (KeyedItem){(uint64_t)path->light << 32u | photon_code(params, path->point), path};
+        search->order[i] = (KeyedItem){photon_code(params, path->point), path};
     }
     search->ordered = search->found;
-    return key_sort(search->order, search->ordered) ||
+    bool sorted = key_sort(search->order, search->ordered);
+    for (uint i = 0; i < search->ordered; ++i)
+        search->order[i].key = order_path(search, i)->light;
+    return (sorted && key_sort(search->order, search->ordered)) ||
            error_memory(error, search->ordered * sizeof *search->order, "photons");
-}
-
-static const PhotonPath *order_path(const PhotonSearch *search, uint at)
-{
-    return search->order[at].item;
 }
 
 /* A neighbour of place `at` in the order, or its own path where there is none. */

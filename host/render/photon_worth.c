@@ -2,6 +2,7 @@
 
 #include "layout/state.h"
 #include "math/vec.h"
+#include "path/photon.h"
 #include "render/film_pilot.h"
 
 #include <pthread.h>
@@ -67,9 +68,9 @@ static double part_by_photons(const float *with, const float *without, size_t pi
 
 static bool has_lights_without_extent(const PhotonMap *photons)
 {
-    const uint *records = photons->words + photons->params.count;
-    for (size_t i = 0; i < photons->params.count; ++i)
-        if (records[i * PHOTON_WORDS + PHOTON_LIGHT] != NONE)
+    const uint count = photons->params.count;
+    for (uint i = 0; i < count; ++i)
+        if (photon_record(photons->words, count, i)[PHOTON_LIGHT] != NONE)
             return true;
     return false;
 }

@@ -8,15 +8,17 @@
 #include "math/vec.h"
 
 /* The grid has 2^PHOTON_LEVELS cells per side at its finest level. */
-#define PHOTON_LEVELS 10u
+#define PHOTON_LEVELS 20u
 #define PHOTON_CELLS (1u << PHOTON_LEVELS)
+
+#define PHOTON_CODE_WORDS 2u /* of a code, the lower half first */
 
 #define PHOTON_POINT 0u /* where it has arrived, 3 */
 #define PHOTON_DIRECTION 3u /* where it came from, unit, 3 */
-#define PHOTON_BY_PLACE 6u /* slopes of the direction per unit of displacement across it, 2 x 2 row by row */
-#define PHOTON_SPREAD 10u /* of the slopes: lower triangular, 3 */
-#define PHOTON_LIGHT 13u /* a light of no extent; NONE: any other */
-#define PHOTON_WORDS 14u
+#define PHOTON_BY_PLACE 6u /* slopes of the direction per unit of displacement across it, 2 rows of a pair each */
+#define PHOTON_SPREAD 8u /* of the slopes: lower triangular, 3 */
+#define PHOTON_LIGHT 11u /* a light of no extent; NONE: any other */
+#define PHOTON_WORDS 12u
 
 /* Smooth specular vertices that a caustic path may have between its light and its receiver. */
 #define CAUSTIC_VERTICES 5u

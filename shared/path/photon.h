@@ -55,13 +55,24 @@ typedef struct PhotonLobe {
     uint light; /* PHOTON_LIGHT */
 } PhotonLobe;
 
-/* Every third bit of a number of ten bits. */
-SHARED_FUNCTION uint photon_code_part(uint x)
+/* The code of no cell. */
+#define PHOTON_OUTSIDE (~(ulong)0u)
+
+/* x, of 21 bits at most, with two zeros above each bit. */
+SHARED_FUNCTION ulong photon_code_part(uint x)
 {
-    x = (x | x << 16) & 0x030000ffu;
-    x = (x | x << 8) & 0x0300f00fu;
-    x = (x | x << 4) & 0x030c30c3u;
-    return (x | x << 2) & 0x09249249u;
+    ulong wide = x;
+    wide = (wide | wide << 32) & 0x001f00000000ffffu;
+    wide = (wide | wide << 16) & 0x001f0000ff0000ffu;
+    wide = (wide | wide << 8) & 0x100f00f00f00f00fu;
+    wide = (wide | wide << 4) & 0x10c30c30c30c30c3u;
+    return (wide | wide << 2) & 0x1249249249249249u;
+}
+
+/* The Morton code of a cell. */
+SHARED_FUNCTION ulong photon_code_of(uint x, uint y, uint z)
+{
+    return photon_code_part(x) | photon_code_part(y) << 1 | photon_code_part(z) << 2;
 }
 
 /* p in units of the finest cells. */
@@ -70,22 +81,34 @@ SHARED_FUNCTION Vec3 photon_cell(PhotonParams params, Vec3 p)
     return vec3_scale(vec3_sub(p, params.origin), params.cells_per_unit);
 }
 
-/* The Morton code of the finest cell that p is in; NONE outside the grid. */
-SHARED_FUNCTION uint photon_code(PhotonParams params, Vec3 p)
+/* The Morton code of the finest cell that p is in; PHOTON_OUTSIDE outside the grid. */
+SHARED_FUNCTION ulong photon_code(PhotonParams params, Vec3 p)
 {
     Vec3 cell = photon_cell(params, p);
     float most = (float)PHOTON_CELLS;
     if (!(cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x < most && cell.y < most && cell.z < most))
-        return NONE;
-    return photon_code_part((uint)cell.x) | photon_code_part((uint)cell.y) << 1 | photon_code_part((uint)cell.z) << 2;
+        return PHOTON_OUTSIDE;
+    return photon_code_of((uint)cell.x, (uint)cell.y, (uint)cell.z);
+}
+
+/* The code of photon `index`. */
+SHARED_FUNCTION ulong photon_code_at(__global const uint *photons, uint index)
+{
+    return photons[2u * index] | (ulong)photons[2u * index + 1u] << 32;
+}
+
+/* The words of photon `index` of so many. */
+SHARED_FUNCTION __global const uint *photon_record(__global const uint *photons, uint count, uint index)
+{
+    return photons + (size_t)count * PHOTON_CODE_WORDS + (size_t)index * PHOTON_WORDS;
 }
 
 /* The first of the sorted codes first ... last - 1 that is not below `code`. */
-SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint last, uint code)
+SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint last, ulong code)
 {
     while (first < last) {
         uint middle = first + (last - first) / 2u;
-        if (photons[middle] < code)
+        if (photon_code_at(photons, middle) < code)
             first = middle + 1u;
         else
             last = middle;
@@ -97,7 +120,7 @@ SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint 
 #define PHOTONS_COUNTED 32u
 
 /* Narrows the photons *first ... *last - 1 to those whose codes are cell ... next - 1. */
-SHARED_FUNCTION void photon_narrow(__global const uint *photons, uint cell, uint next, uint *first, uint *last)
+SHARED_FUNCTION void photon_narrow(__global const uint *photons, ulong cell, ulong next, uint *first, uint *last)
 {
     uint begin = *first, end = *last, before = 0u, within = 0u;
     if (end - begin > PHOTONS_COUNTED) {
@@ -106,25 +129,26 @@ SHARED_FUNCTION void photon_narrow(__global const uint *photons, uint cell, uint
         return;
     }
     for (uint i = begin; i < end; ++i) {
-        before += photons[i] < cell ? 1u : 0u;
-        within += photons[i] < next ? 1u : 0u;
+        ulong code = photon_code_at(photons, i);
+        before += code < cell ? 1u : 0u;
+        within += code < next ? 1u : 0u;
     }
     *first = begin + before;
     *last = begin + within;
 }
 
 /* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
-SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, uint cell,
+SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, ulong cell,
                                       uint shift, uint *first, uint *last)
 {
-    uint next = cell + (1u << shift);
+    ulong next = cell + ((ulong)1u << shift);
     *first = params.first[group];
     *last = params.first[group + 1u];
     if (params.directory_level > 0u) {
         uint entry_shift = 3u * (PHOTON_LEVELS - params.directory_level);
         __global const uint *directory = photons + params.directory[group];
-        *first = directory[cell >> entry_shift];
-        *last = directory[((next - 1u) >> entry_shift) + 1u];
+        *first = directory[(uint)(cell >> entry_shift)];
+        *last = directory[(uint)((next - 1u) >> entry_shift) + 1u];
         if (shift >= entry_shift)
             return;
     }
@@ -142,25 +166,76 @@ SHARED_FUNCTION PhotonSet photon_set_of(uint first, uint last, uint most, uint s
     return set;
 }
 
-/* The photons of a group for a place with the code `code`: those of the finest cell around it that has enough. */
-SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *photons, uint group, uint code)
+/* The first photon of a group that is not before the code. */
+SHARED_FUNCTION uint photon_position(PhotonParams params, __global const uint *photons, uint group, ulong code)
 {
-    uint shift = 3u * (PHOTON_LEVELS - params.level[group]);
-    uint first = 0u, last = 0u;
-    for (; first == last && shift <= 3u * PHOTON_LEVELS; shift += 3u) {
-        uint cell = code >> shift << shift;
-        photon_cell_find(params, photons, group, cell, shift, &first, &last);
+    uint first = params.first[group], last = params.first[group + 1u];
+    if (params.directory_level > 0u) {
+        uint entry = (uint)(code >> 3u * (PHOTON_LEVELS - params.directory_level));
+        __global const uint *directory = photons + params.directory[group];
+        first = directory[entry];
+        last = directory[entry + 1u];
     }
-    for (shift -= 3u; first != last && shift > 0u; shift -= 3u) {
-        uint cell = code >> (shift - 3u) << (shift - 3u);
-        uint inner = first, inner_end = last;
-        photon_narrow(photons, cell, cell + (1u << (shift - 3u)), &inner, &inner_end);
-        if (inner_end - inner < PHOTONS_LEAST)
-            break;
-        first = inner;
-        last = inner_end;
+    return photon_find(photons, first, last, code);
+}
+
+/* The least cell that holds two codes has 2^shift finest ones. differ: the bits in which they differ. */
+SHARED_FUNCTION uint photon_shift(ulong differ)
+{
+    uint shift = 0u;
+    for (; differ != 0u; differ >>= 3)
+        shift += 3u;
+    return shift;
+}
+
+/* As photon_find, of codes from which on all others are not below `code`; searches from there, in steps that double,
+ * since it is seldom far. */
+SHARED_FUNCTION uint photon_find_before(__global const uint *photons, uint first, uint from, ulong code)
+{
+    uint step = 1u;
+    while (from - first >= step && photon_code_at(photons, from - step) >= code) {
+        from -= step;
+        step *= 2u;
     }
-    return photon_set_of(first, last, PHOTONS_MOST, shift);
+    return photon_find(photons, from - first >= step ? from - step + 1u : first, from, code);
+}
+
+/* The same, of codes before which all others are below `code`. */
+SHARED_FUNCTION uint photon_find_behind(__global const uint *photons, uint from, uint last, ulong code)
+{
+    uint step = 1u;
+    while (last - from >= step && photon_code_at(photons, from + step - 1u) < code) {
+        from += step;
+        step *= 2u;
+    }
+    return photon_find(photons, from, last - from >= step ? from + step - 1u : last, code);
+}
+
+/* The photons of a group, which has some, for a place with the code `code`: those of the cell of the usual level that
+ * it is in, or of the finest one that has PHOTONS_LEAST, or, where that of the usual level has none, of the least that
+ * has any. In the order of codes those that share most of it are next to it. */
+SHARED_FUNCTION PhotonSet photon_set(PhotonParams params, __global const uint *photons, uint group, ulong code)
+{
+    uint begin = params.first[group], end = params.first[group + 1u];
+    uint at = photon_position(params, photons, group, code), before = at, after = at, nearest = 0u;
+    ulong differ = 0u; /* bits in which the next photon's code differs */
+    for (uint k = 0u; k < PHOTONS_LEAST; ++k) {
+        ulong below = before > begin ? code ^ photon_code_at(photons, before - 1u) : PHOTON_OUTSIDE;
+        ulong above = after < end ? code ^ photon_code_at(photons, after) : PHOTON_OUTSIDE;
+        differ = below < above ? below : above;
+        if (below < above)
+            --before;
+        else if (after < end)
+            ++after;
+        if (k == 0u)
+            nearest = photon_shift(differ);
+    }
+    uint usual = 3u * (PHOTON_LEVELS - params.level[group]), enough = photon_shift(differ);
+    uint shift = enough < usual ? enough : usual;
+    shift = shift > nearest ? shift : nearest;
+    ulong cell = code >> shift << shift;
+    return photon_set_of(photon_find_before(photons, begin, at, cell),
+                         photon_find_behind(photons, at, end, cell + ((ulong)1u << shift)), PHOTONS_MOST, shift);
 }
 
 /* The photons of a group in a cell of 2^shift finest ones that shares a face with the one that `cell` (photon_cell) is
@@ -190,7 +265,7 @@ SHARED_FUNCTION PhotonSet photon_set_beside(PhotonParams params, __global const 
         if (beside >= PHOTON_CELLS) /* outside the grid; also below it */
             continue;
         corner[nearest] = beside;
-        uint code = photon_code_part(corner[0]) | photon_code_part(corner[1]) << 1 | photon_code_part(corner[2]) << 2;
+        ulong code = photon_code_of(corner[0], corner[1], corner[2]);
         corner[nearest] = own;
         uint first, last;
         photon_cell_find(params, photons, group, code, shift, &first, &last);
@@ -209,11 +284,11 @@ SHARED_FUNCTION float photon_set_weight(PhotonParams params, uint set)
 SHARED_FUNCTION PhotonSets photon_sets(PhotonParams params, __global const uint *photons, Vec3 p)
 {
     PhotonSets found;
-    uint code = params.count > 0u ? photon_code(params, p) : NONE;
+    ulong code = params.count > 0u ? photon_code(params, p) : PHOTON_OUTSIDE;
     found.weight = 0.0f;
     for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
         PhotonSet own = photon_set_of(0u, 0u, 1u, 0u), beside = own;
-        if (code != NONE && params.first[group] < params.first[group + 1u]) {
+        if (code != PHOTON_OUTSIDE && params.first[group] < params.first[group + 1u]) {
             own = photon_set(params, photons, group, code);
             beside = photon_set_beside(params, photons, group, photon_cell(params, p), own.shift);
         }
@@ -250,15 +325,22 @@ SHARED_FUNCTION Vec3 photon_vector(__global const uint *record, uint field)
     return vec3(word_float(record + field), word_float(record + field + 1u), word_float(record + field + 2u));
 }
 
+/* Two numbers in a word: the upper halves of floats, with seven bits of mantissa. */
+SHARED_FUNCTION Vec2 photon_pair(uint word)
+{
+    return vec2(bits_float(word & 0xffff0000u), bits_float(word << 16));
+}
+
 /* What photon `index` predicts for the place p. */
 SHARED_FUNCTION PhotonLobe photon_lobe(PhotonParams params, __global const uint *photons, uint index, Vec3 p)
 {
-    __global const uint *record = photons + params.count + (size_t)index * PHOTON_WORDS;
+    __global const uint *record = photon_record(photons, params.count, index);
     PhotonLobe lobe;
     lobe.frame = frame_from_normal(photon_vector(record, PHOTON_DIRECTION));
     Vec3 moved = frame_to_local(lobe.frame, vec3_sub(p, photon_vector(record, PHOTON_POINT)));
-    lobe.a = word_float(record + PHOTON_BY_PLACE) * moved.x + word_float(record + PHOTON_BY_PLACE + 1u) * moved.y;
-    lobe.b = word_float(record + PHOTON_BY_PLACE + 2u) * moved.x + word_float(record + PHOTON_BY_PLACE + 3u) * moved.y;
+    Vec2 by_place[2] = {photon_pair(record[PHOTON_BY_PLACE]), photon_pair(record[PHOTON_BY_PLACE + 1u])};
+    lobe.a = by_place[0].x * moved.x + by_place[0].y * moved.y;
+    lobe.b = by_place[1].x * moved.x + by_place[1].y * moved.y;
     lobe.spread_aa = word_float(record + PHOTON_SPREAD);
     lobe.spread_ba = word_float(record + PHOTON_SPREAD + 1u);
     lobe.spread_bb = word_float(record + PHOTON_SPREAD + 2u);

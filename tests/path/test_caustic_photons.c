@@ -53,7 +53,7 @@ START_TEST(test_rest_of_draws)
     static const struct {
         uint delta, last, draws;
     } cases[] = {{0x4u, 2, 2}, {0xau, 3, 2}, {0xeu, 4, 0}, {0x1cu, 4, 2}, {0x2eu, 5, 2}, {0x5eu, 6, 1}, {0x8u, 3, 2}};
-    uint words[1 + PHOTON_WORDS] = {0}, paths[RECEIVER_WORDS] = {0};
+    uint words[PHOTON_CODE_WORDS + PHOTON_WORDS] = {0}, paths[RECEIVER_WORDS] = {0};
     FrameParams frame = {.pass.stride = 1,
                          .photons = {.count = 1,
                                      .everywhere = 1,
@@ -63,7 +63,7 @@ START_TEST(test_rest_of_draws)
                                      .cells_per_unit = 1.0f}};
     const SceneView scene = {.frame = &frame, .photons = words};
     const float p = 0.01f, spread = 0.1f;
-    uint *photon = words + 1;
+    uint *photon = words + PHOTON_CODE_WORDS;
     photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
     photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
     photon[PHOTON_LIGHT] = NONE;
@@ -122,12 +122,12 @@ START_TEST(test_density)
 {
     enum { COUNT = 5 };
     static const uint lights[COUNT] = {NONE, 2, NONE, 7, NONE};
-    uint words[COUNT * (1 + PHOTON_WORDS)] = {0};
+    uint words[COUNT * (PHOTON_CODE_WORDS + PHOTON_WORDS)] = {0};
     const PhotonParams params = {
         .count = COUNT, .first = {0, COUNT, COUNT, COUNT, COUNT}, .level = {1, 1, 1, 1}, .weight = {1.0f}};
     const float spread = 0.1f;
     for (uint i = 0; i < COUNT; ++i) {
-        uint *photon = words + COUNT + i * PHOTON_WORDS;
+        uint *photon = words + COUNT * PHOTON_CODE_WORDS + i * PHOTON_WORDS;
         photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
         photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
         photon[PHOTON_LIGHT] = lights[i];
@@ -167,50 +167,71 @@ END_TEST
 
 static int codes_compare(const void *a, const void *b)
 {
-    const uint *x = a, *y = b;
+    const ulong *x = a, *y = b;
     return (*x > *y) - (*x < *y);
+}
+
+/* Sorts the codes, and puts them where photons have them. */
+static void codes_put(ulong *codes, uint count, uint *words)
+{
+    qsort(codes, count, sizeof *codes, codes_compare);
+    for (uint i = 0; i < count; ++i) {
+        words[PHOTON_CODE_WORDS * i] = (uint)codes[i];
+        words[PHOTON_CODE_WORDS * i + 1] = (uint)(codes[i] >> 32);
+    }
+}
+
+/* A place in the grid, every other one in a corner, which is as small as a caustic in a landscape. */
+static Vec3 grid_place(unsigned *state, int i)
+{
+    const double x = test_random_unit(state), y = test_random_unit(state), z = 0.1 * test_random_unit(state);
+    return vec3_scale(vec3((float)(x * x * x), (float)y, (float)z), i % 2 == 0 ? 1.0f : 1.0f / 8192.0f);
+}
+
+static bool cell_has(ulong code, ulong other, uint level)
+{
+    return code >> 3u * (PHOTON_LEVELS - level) == other >> 3u * (PHOTON_LEVELS - level);
 }
 
 /* A cell's photons are those that a search of all finds; the finest cell that has enough is taken, or, where the usual
  * one is empty, a coarser one. */
 START_TEST(test_grid)
 {
-    enum { COUNT = 3000 };
-    static uint words[COUNT];
+    enum { COUNT = 6000 };
+    static ulong codes[COUNT];
+    static uint words[PHOTON_CODE_WORDS * COUNT];
     PhotonParams params = {.count = COUNT,
                            .first = {0, 0, COUNT, COUNT, COUNT},
                            .level = {1, 5, 1, 1},
                            .cells_per_unit = (float)PHOTON_CELLS};
     unsigned state = 11;
-    for (int i = 0; i < COUNT; ++i) {
-        double x = test_random_unit(&state), y = test_random_unit(&state), z = 0.1 * test_random_unit(&state);
-        words[i] = photon_code(params, vec3((float)(x * x * x), (float)y, (float)z));
-    }
-    qsort(words, COUNT, sizeof *words, codes_compare);
-    int coarser = 0;
+    for (int i = 0; i < COUNT; ++i)
+        codes[i] = photon_code(params, grid_place(&state, i));
+    codes_put(codes, COUNT, words);
+    int coarser = 0, fine = 0;
     for (int i = 0; i < 4000; ++i) {
-        double x = test_random_unit(&state);
-        Vec3 p = vec3((float)(x * x), (float)test_random_unit(&state), (float)(0.1 * test_random_unit(&state)));
-        uint code = photon_code(params, p), inside[PHOTON_LEVELS + 1] = {COUNT}, level = params.level[1];
+        const ulong code = photon_code(params, grid_place(&state, i));
+        uint inside[PHOTON_LEVELS + 1] = {COUNT}, level = params.level[1];
         for (int k = 0; k < COUNT; ++k)
             for (uint l = 1; l <= PHOTON_LEVELS; ++l)
-                inside[l] += words[k] >> 3u * (PHOTON_LEVELS - l) == code >> 3u * (PHOTON_LEVELS - l);
+                inside[l] += cell_has(codes[k], code, l);
         while (inside[level] == 0)
             --level;
         coarser += level < params.level[1];
         while (inside[level] > 0 && level < PHOTON_LEVELS && inside[level + 1] >= PHOTONS_LEAST)
             ++level;
+        fine += level > 13;
         PhotonSet set = photon_set(params, words, 1, code);
         uint every = (inside[level] + PHOTONS_MOST - 1) / PHOTONS_MOST;
+        ck_assert_uint_eq(set.shift, 3 * (PHOTON_LEVELS - level));
         ck_assert_uint_eq(set.every, every);
         ck_assert_uint_eq(set.number, (inside[level] + every - 1) / every);
         for (uint k = 0; k < set.number; ++k)
-            ck_assert_uint_eq(words[set.first + k * set.every] >> 3u * (PHOTON_LEVELS - level),
-                              code >> 3u * (PHOTON_LEVELS - level));
-        ck_assert(set.first == 0 ||
-                  words[set.first - 1] >> 3u * (PHOTON_LEVELS - level) != code >> 3u * (PHOTON_LEVELS - level));
+            ck_assert(cell_has(codes[set.first + k * set.every], code, level));
+        ck_assert(set.first == 0 || !cell_has(codes[set.first - 1], code, level));
     }
-    ck_assert_int_gt(coarser, 100);
+    ck_assert_int_gt(coarser, 50);
+    ck_assert_int_gt(fine, 1500);
 }
 END_TEST
 
@@ -219,24 +240,26 @@ END_TEST
 START_TEST(test_beside)
 {
     enum { SIDE = 64 }; /* photons on a plane z = 0, at the corners of a grid but for a hole */
-    static uint words[SIDE * SIDE * (1 + PHOTON_WORDS)];
+    static ulong codes[SIDE * SIDE];
+    static uint words[SIDE * SIDE * (PHOTON_CODE_WORDS + PHOTON_WORDS)];
+    const uint level = 5;
     PhotonParams params = {.level = {4, 1, 1, 1}, .weight = {0.7f}, .cells_per_unit = (float)PHOTON_CELLS};
     for (int i = 0; i < SIDE * SIDE; ++i) {
         const float x = (float)(i % SIDE) / (float)SIDE, y = (float)(i >> 6) / (float)SIDE;
         if (x < 0.25f || x >= 0.3125f || y < 0.25f || y >= 0.3125f)
-            words[params.count++] = photon_code(params, vec3(x, y, 0.0f));
+            codes[params.count++] = photon_code(params, vec3(x, y, 0.0f));
     }
     for (int group = 1; group <= (int)PHOTON_GROUPS; ++group)
         params.first[group] = params.count;
-    qsort(words, params.count, sizeof *words, codes_compare);
+    codes_put(codes, params.count, words);
     for (uint i = 0; i < params.count; ++i) {
-        uint *photon = words + params.count + i * PHOTON_WORDS;
+        uint *photon = words + params.count * PHOTON_CODE_WORDS + i * PHOTON_WORDS;
         photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
         photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(0.1f);
         photon[PHOTON_LIGHT] = i % 4 == 3 ? 1 : NONE;
     }
-    /* In cells, of which 32 are a side: place, and the cell beside. Below the plane there is none, and those above it and
-     * in the hole are empty. */
+    /* In cells, of which 32 are a side: place, and the cell beside. Below the plane there is none, and those above
+     * it and in the hole are empty. */
     static const struct {
         float place[3];
         int beside[2];
@@ -250,22 +273,22 @@ START_TEST(test_beside)
         const PhotonSets found = photon_sets(params, words, p);
         const PhotonSet *own = &found.sets[0], *beside = &found.sets[1];
         const float x = (float)cases[i].beside[0] / 32.0f, y = (float)cases[i].beside[1] / 32.0f;
-        const uint cell = photon_code(params, vec3(x, y, 0.0f));
-        ck_assert_uint_eq(own->shift, 15);
+        const ulong cell = photon_code(params, vec3(x, y, 0.0f));
+        ck_assert_uint_eq(own->shift, 3 * (PHOTON_LEVELS - level));
         ck_assert_uint_eq(own->number, 4);
         ck_assert_uint_eq(beside->number, 4);
         for (uint k = 0; k < own->number; ++k)
-            ck_assert_uint_eq(words[own->first + k * own->every] >> 15, photon_code(params, p) >> 15);
+            ck_assert(cell_has(codes[own->first + k * own->every], photon_code(params, p), level));
         for (uint k = 0; k < beside->number; ++k)
-            ck_assert_msg(words[beside->first + k * beside->every] >> 15 == cell >> 15, "case %zu", i);
+            ck_assert_msg(cell_has(codes[beside->first + k * beside->every], cell, level), "case %zu", i);
         TEST_NEAR(found.weight, 0.7 * (1.0 + (double)PHOTONS_BESIDE_WEIGHT), 1e-6);
         /* what is drawn has the frequencies that the density has */
         int drawn[2] = {0}, of_light = 0;
         double part = 0.0;
         for (int k = 0; k < 3000; ++k) {
             const uint photon = photon_choose(params, &found, ((float)k + 0.5f) / 3000.0f);
-            ++drawn[words[photon] >> 15 == cell >> 15];
-            of_light += words[params.count + photon * PHOTON_WORDS + PHOTON_LIGHT] == 1;
+            ++drawn[cell_has(codes[photon], cell, level)];
+            of_light += photon_record(words, params.count, photon)[PHOTON_LIGHT] == 1;
         }
         TEST_NEAR(drawn[1], 1000.0, 2.0);
         for (uint light = 0; light < 2; ++light) {

@@ -299,8 +299,8 @@ START_TEST(test_agreement)
 }
 END_TEST
 
-/* Directories find the photons of cells of any level that a search of the whole group finds, of three lights, in no
- * more words than there are photons. */
+/* The grid is a little larger than the photons' box. Directories find the photons of cells of any level that a
+ * search of the whole group finds, of three lights, in no more words than there are photons. */
 START_TEST(test_directories)
 {
     enum { COUNT = 5000 };
@@ -321,22 +321,31 @@ START_TEST(test_directories)
                                  .axes = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}}};
     }
     ck_assert_msg(photon_grid_make(&records, &lights, &map, &missed, &error), "%s", error.message);
-    PhotonParams plain = map.params;
-    plain.directory_level = 0;
     ck_assert_uint_gt(map.params.directory_level, 1);
-    ck_assert_uint_le(map.word_count, (2 + PHOTON_WORDS) * (size_t)COUNT);
+    ck_assert_uint_le(map.word_count, (PHOTON_CODE_WORDS + PHOTON_WORDS + 1) * (size_t)COUNT);
     ck_assert_uint_eq(map.params.first[3], COUNT);
+    /* The photons' box is about the unit square; rounding puts places on its edge outside. */
+    ck_assert(photon_code(map.params, vec3(-1e-4f, -1e-4f, -1e-4f)) != PHOTON_OUTSIDE);
+    ck_assert(photon_code(map.params, vec3(1.0001f, 1.0001f, 0.1f)) != PHOTON_OUTSIDE);
+    ck_assert(photon_code(map.params, vec3(0.5f, 1.1f, 0.1f)) == PHOTON_OUTSIDE);
     int occupied = 0;
-    for (int i = 0; i < 3000; ++i) {
-        const uint group = (uint)i % 3, shift = 3 * ((uint)i / 3 % (PHOTON_LEVELS + 1)),
-                   near = map.words[(size_t)COUNT * (uint)i / 3000],
-                   code = i % 2 == 0 ? near : near ^ 1u << (uint)i % 30;
-        uint first, last, expected_first, expected_last;
+    for (uint i = 0; i < 3000; ++i) {
+        const uint group = i % 3, shift = 3 * (i / 3 % (PHOTON_LEVELS + 1));
+        const ulong near = photon_code_at(map.words, COUNT * i / 3000), bit = (ulong)1 << i % (3 * PHOTON_LEVELS);
+        const ulong codes[] = {near, near ^ bit, near - 1}, code = codes[i / 63 % 3];
+        const uint *of_group = map.params.first + group;
+        uint first, last, expected_first = of_group[0], number = 0, position = of_group[0];
+        for (uint k = of_group[0]; k < of_group[1]; ++k) {
+            const ulong other = photon_code_at(map.words, k);
+            position += other < code;
+            expected_first += other >> shift < code >> shift;
+            number += other >> shift == code >> shift;
+        }
         photon_cell_find(map.params, map.words, group, code >> shift << shift, shift, &first, &last);
-        photon_cell_find(plain, map.words, group, code >> shift << shift, shift, &expected_first, &expected_last);
-        ck_assert_uint_eq(last - first, expected_last - expected_first);
-        ck_assert(first == expected_first || first == last);
-        occupied += first < last;
+        ck_assert_uint_eq(last - first, number);
+        ck_assert(first == expected_first || number == 0);
+        occupied += number > 0;
+        ck_assert_uint_eq(photon_position(map.params, map.words, group, code), position);
     }
     ck_assert_int_gt(occupied, 1000);
     photon_map_destroy(&map);
