@@ -61,7 +61,7 @@ plant() {
     # Whether `text` remains in force in parentheses or, with its semicolon, in braces; finds most that do not.
     function plantable(text) {
         if (text ~ /;$/)
-            return text !~ /^[A-Za-z_][A-Za-z0-9_]* \**[a-z_]+(\[.*)? = / # a declaration
+            return text !~ /^(const )?[A-Za-z_][A-Za-z0-9_]* \**[a-z_]+(\[.*)? = / # a declaration
         return balanced(text) && text !~ /^(if |else|return |#|[?|\/,.:={]|&&|\* )/ && text !~ /([?|\/,:=]|&&)$/
     }
     function finish(    from, at) {
@@ -138,6 +138,7 @@ plant() {
 
 files=$(sed -n 's/^\[[0-9]*\] \([^:]*\): .*/\1/p' "$list" | sort -u)
 numbers=$(sed -n 's/^\[\([0-9]*\)\] .*/\1/p' "$list")
+rm -rf "$planted" # of an earlier list
 mkdir -p "$source" "$planted/shared" "$planted/host"
 for file in $files; do
     plant "$file" >"$planted/new" || exit 1
