@@ -241,7 +241,7 @@ static void words_fill(const GridEntry *entries, uint count, uint *words)
 {
     for (uint i = 0; i < count; ++i) {
         const PhotonRecord *record = entries[i].item;
-        uint *photon = words + PHOTON_CODE_WORDS * (size_t)count + (size_t)i * PHOTON_WORDS;
+        uint *photon = words + photon_record_at(count, i);
         words[PHOTON_CODE_WORDS * (size_t)i] = (uint)entry_code(&entries[i]);
         words[PHOTON_CODE_WORDS * (size_t)i + 1] = (uint)(entry_code(&entries[i]) >> 32u);
         vector_put(photon + PHOTON_POINT, record->point);
@@ -279,7 +279,7 @@ static size_t directories_place(PhotonParams *params)
            groups * (((size_t)8 << 3u * params->directory_level) + 1) <= params->count)
         ++params->directory_level;
     for (uint g = 0; g < PHOTON_GROUPS && params->directory_level > 0; ++g) {
-        params->directory[g] = (uint)((size_t)params->count * (PHOTON_CODE_WORDS + PHOTON_WORDS) + words);
+        params->directory[g] = (uint)(photon_record_at(params->count, params->count) + words);
         if (params->first[g] < params->first[g + 1])
             words += ((size_t)1 << 3u * params->directory_level) + 1;
     }
@@ -354,7 +354,7 @@ bool photon_grid_make(PhotonRecords *records, const PhotonLights *lights, Photon
         return true;
     }
     groups_set(entries, &map->params);
-    map->word_count = (size_t)count * (PHOTON_CODE_WORDS + PHOTON_WORDS) + directories_place(&map->params);
+    map->word_count = photon_record_at(count, count) + directories_place(&map->params);
     size_t bytes = map->word_count * sizeof *map->words;
     map->words = malloc(bytes);
     if (map->words) {

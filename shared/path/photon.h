@@ -97,10 +97,15 @@ SHARED_FUNCTION ulong photon_code_at(__global const uint *photons, uint index)
     return photons[2u * index] | (ulong)photons[2u * index + 1u] << 32;
 }
 
-/* The words of photon `index` of so many. */
+/* Where the words of photon `index` of so many begin; of photon `count`, the end of all. */
+SHARED_FUNCTION size_t photon_record_at(uint count, uint index)
+{
+    return (size_t)count * PHOTON_CODE_WORDS + (size_t)index * PHOTON_WORDS;
+}
+
 SHARED_FUNCTION __global const uint *photon_record(__global const uint *photons, uint count, uint index)
 {
-    return photons + (size_t)count * PHOTON_CODE_WORDS + (size_t)index * PHOTON_WORDS;
+    return photons + photon_record_at(count, index);
 }
 
 /* The first of the sorted codes first ... last - 1 that is not below `code`. */
@@ -137,22 +142,29 @@ SHARED_FUNCTION void photon_narrow(__global const uint *photons, ulong cell, ulo
     *last = begin + within;
 }
 
-/* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
-SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, ulong cell,
-                                      uint shift, uint *first, uint *last)
+/* The least range *first ... *last - 1 of the group's photons known to have those of the codes low ... high: from the
+ * directory, if there is one. */
+SHARED_FUNCTION void photon_known(PhotonParams params, __global const uint *photons, uint group, ulong low, ulong high,
+                                  uint *first, uint *last)
 {
-    ulong next = cell + ((ulong)1u << shift);
     *first = params.first[group];
     *last = params.first[group + 1u];
     if (params.directory_level > 0u) {
         uint entry_shift = 3u * (PHOTON_LEVELS - params.directory_level);
         __global const uint *directory = photons + params.directory[group];
-        *first = directory[(uint)(cell >> entry_shift)];
-        *last = directory[(uint)((next - 1u) >> entry_shift) + 1u];
-        if (shift >= entry_shift)
-            return;
+        *first = directory[(uint)(low >> entry_shift)];
+        *last = directory[(uint)(high >> entry_shift) + 1u];
     }
-    photon_narrow(photons, cell, next, first, last);
+}
+
+/* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
+SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, ulong cell,
+                                      uint shift, uint *first, uint *last)
+{
+    ulong next = cell + ((ulong)1u << shift);
+    photon_known(params, photons, group, cell, next - 1u, first, last);
+    if (params.directory_level == 0u || shift < 3u * (PHOTON_LEVELS - params.directory_level))
+        photon_narrow(photons, cell, next, first, last);
 }
 
 /* The photons first ... last - 1, or at most `most` that stand for them. */
@@ -169,13 +181,8 @@ SHARED_FUNCTION PhotonSet photon_set_of(uint first, uint last, uint most, uint s
 /* The first photon of a group that is not before the code. */
 SHARED_FUNCTION uint photon_position(PhotonParams params, __global const uint *photons, uint group, ulong code)
 {
-    uint first = params.first[group], last = params.first[group + 1u];
-    if (params.directory_level > 0u) {
-        uint entry = (uint)(code >> 3u * (PHOTON_LEVELS - params.directory_level));
-        __global const uint *directory = photons + params.directory[group];
-        first = directory[entry];
-        last = directory[entry + 1u];
-    }
+    uint first, last;
+    photon_known(params, photons, group, code, code, &first, &last);
     return photon_find(photons, first, last, code);
 }
 
