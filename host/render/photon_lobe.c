@@ -15,11 +15,16 @@
  * nothing but its own direction. */
 #define FLAT_PART 1e-6
 
+float photon_path_along(const PhotonLights *lights, const PhotonPath *path)
+{
+    return vec3_dot(vec3_sub(lights->center, path->origin), path->first);
+}
+
 /* A place of a path's first ray among the specular surfaces: closest to their middle, or beyond it if they surround the
  * light. */
 static Vec3 path_place(const PhotonLights *lights, const PhotonPath *path)
 {
-    float along = vec3_dot(vec3_sub(lights->center, path->origin), path->first);
+    float along = photon_path_along(lights, path);
     return vec3_mad(path->origin, float_max(along, (float)lights->radius), path->first);
 }
 

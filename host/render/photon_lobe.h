@@ -26,6 +26,9 @@ typedef struct PhotonRecords {
     int threads; /* that compare them; at least this one */
 } PhotonRecords;
 
+/* How far along a subpath's first ray the place is that is closest to the middle of the specular surfaces. */
+float photon_path_along(const PhotonLights *lights, const PhotonPath *path);
+
 /* Neighbours of a subpath: two through the same point of the light (or, at infinity, in the same direction), and two
  * through other points (in other directions). */
 #define PHOTON_NEIGHBOURS 4u

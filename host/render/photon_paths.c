@@ -110,8 +110,7 @@ static Vec3 step_between(Vec3 v, Vec3 a, Vec3 b, const uint random[2])
 /* Where the first ray is closest to the middle of the specular surfaces. */
 static Vec3 path_crossing(const PhotonSearch *search, const PhotonPath *path)
 {
-    Vec3 to_center = vec3_sub(smooth_boxes_center(&search->lights->aims), path->origin);
-    return vec3_mad(path->origin, vec3_dot(to_center, path->first), path->first);
+    return vec3_mad(path->origin, photon_path_along(search->lights, path), path->first);
 }
 
 /* A subpath between that of place `at` in the order and two neighbours, from the same point of the light or, from
