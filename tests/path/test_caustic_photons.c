@@ -230,7 +230,7 @@ START_TEST(test_grid)
             ck_assert(cell_has(codes[set.first + k * set.every], code, level));
         ck_assert(set.first == 0 || !cell_has(codes[set.first - 1], code, level));
     }
-    ck_assert_int_gt(coarser, 50);
+    ck_assert_int_gt(coarser, 100);
     ck_assert_int_gt(fine, 1500);
 }
 END_TEST

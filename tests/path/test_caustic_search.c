@@ -36,6 +36,17 @@ START_TEST(test_found_among_many)
 }
 END_TEST
 
+/* A rendering makes least ... most photons. number: of the case. */
+static void photons_check(const RenderSetup *setup, size_t number, unsigned least, unsigned most)
+{
+    RenderedImage image;
+    fixture_render(setup, &image);
+    printf("case %zu: %u photons\n", number, image.result.photons);
+    ck_assert_uint_ge(image.result.photons, least);
+    ck_assert_uint_le(image.result.photons, most);
+    fixture_destroy(&image);
+}
+
 /* More photons are made only where they predict better: of a bead's caustic those of a small lamp do, those of a large
  * one hit it anyway. */
 START_TEST(test_found_more)
@@ -48,12 +59,7 @@ START_TEST(test_found_more)
         char text[4096];
         snprintf(text, sizeof text, BD_BEGIN BD_GREY BD_FLOOR "%s" SMOOTH_GLASS LITTLE_BEAD, cases[i].lamp);
         const RenderSetup setup = {.text = text, .samples = 1, .threads = 2, .photons = 262144};
-        RenderedImage image;
-        fixture_render(&setup, &image);
-        printf("lamp %zu: %u photons\n", i, image.result.photons);
-        ck_assert_uint_ge(image.result.photons, cases[i].least);
-        ck_assert_uint_le(image.result.photons, cases[i].most);
-        fixture_destroy(&image);
+        photons_check(&setup, i, cases[i].least, cases[i].most);
     }
 }
 END_TEST
@@ -135,12 +141,7 @@ START_TEST(test_default_limit)
                                    .height = 96,
                                    .photons = cases[i].photons,
                                    .integrator = integrator_mmlt()};
-        RenderedImage image;
-        fixture_render(&setup, &image);
-        printf("case %zu: %u photons\n", i, image.result.photons);
-        ck_assert_uint_ge(image.result.photons, cases[i].least);
-        ck_assert_uint_le(image.result.photons, cases[i].most);
-        fixture_destroy(&image);
+        photons_check(&setup, i, cases[i].least, cases[i].most);
     }
 }
 END_TEST
@@ -168,8 +169,8 @@ static double spread_near(const PhotonMap *map, float distance)
     return median;
 }
 
-/* Nearly all subpaths that arrive become photons, however wide the world or distant the lamp: those of the sun begin
- * far outside, and neighbours in other directions must still meet the bead. Photons close to it predict as well in a
+/* Most subpaths that arrive become photons, however wide the world or distant the lamp: those of the sun begin far
+ * outside, and neighbours in other directions must still meet the bead. Photons close to it predict as well in a
  * wide world, since the grid has small cells there. */
 START_TEST(test_wide_world)
 {
@@ -204,7 +205,7 @@ END_TEST
 static void cells_count(const PhotonMap *map, int side, double *cells)
 {
     for (uint i = 0; i < map->params.count; ++i) {
-        const uint *point = photon_record(map->words, map->params.count, (uint)i) + PHOTON_POINT;
+        const uint *point = photon_record(map->words, map->params.count, i) + PHOTON_POINT;
         int x = (int)floor((0.2 + (double)bits_float(point[0])) / 2.4 * side);
         int z = (int)floor((2.2 + (double)bits_float(point[2])) / 2.4 * side);
         if (x >= 0 && x < side && z >= 0 && z < side)
