@@ -254,8 +254,7 @@ static void words_fill(const GridEntry *entries, uint count, uint *words)
     }
 }
 
-/* Where the groups begin, their levels and weights: the root of their numbers, so that rare photons are drawn by more
- * often than they are found. */
+/* Where the groups begin, and their levels. */
 static void groups_set(const GridEntry *entries, PhotonParams *params)
 {
     for (uint g = 0, i = 0; g < PHOTON_GROUPS; ++g) {
@@ -263,7 +262,6 @@ static void groups_set(const GridEntry *entries, PhotonParams *params)
         while (i < params->count && entry_group(&entries[i]) == g)
             ++i;
         params->first[g + 1] = i;
-        params->weight[g] = (float)sqrt((double)(i - params->first[g]) / params->count);
         params->level[g] = level_choose(entries + params->first[g], i - params->first[g]);
     }
 }

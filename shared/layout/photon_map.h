@@ -21,7 +21,7 @@
 #define PHOTON_WORDS 12u
 
 /* Smooth specular vertices that a caustic path may have between its light and its receiver. */
-#define CAUSTIC_VERTICES 5u
+#define CAUSTIC_VERTICES 7u
 
 /* Photons of different lights without extent, and those that came by different kinds of path, are in groups of their
  * own, so that rare ones are not lost among many; the last group has the rest. */
@@ -34,7 +34,6 @@ typedef struct PhotonParams {
     uint level[PHOTON_GROUPS]; /* at which the cells of a group hold some photons each */
     uint directory_level; /* 0: there are no directories */
     uint directory[PHOTON_GROUPS]; /* where that of each group begins, in words */
-    float weight[PHOTON_GROUPS]; /* probability of drawing by the group, beside those that have photons at a place */
     Vec3 origin; /* corner of the grid */
     float cells_per_unit; /* of the finest level */
     /* Lights of no extent count as a sphere of this radius, or as a cone of this sine, where photons find them. */

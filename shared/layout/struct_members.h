@@ -234,7 +234,6 @@
     MEMBER(PhotonParams, level)                                                                                        \
     MEMBER(PhotonParams, directory_level)                                                                              \
     MEMBER(PhotonParams, directory)                                                                                    \
-    MEMBER(PhotonParams, weight)                                                                                       \
     MEMBER(PhotonParams, origin)                                                                                       \
     MEMBER(PhotonParams, cells_per_unit)                                                                               \
     MEMBER(PhotonParams, point_radius)                                                                                 \

@@ -52,7 +52,7 @@ SHARED_FUNCTION void caustic_begin(const SceneView *scene, __global uint *restri
         return;
     Random4 random = caustic_random(frame, paths, item, depth, 0u);
     float choice = ((float)drawn + random_float(random.x[0])) / (float)draws;
-    PhotonLobe lobe = photon_lobe(params, scene->photons, photon_choose(params, &found, choice), p);
+    PhotonLobe lobe = photon_lobe(params, scene->photons, photon_choose(&found, choice), p);
     Vec3 w;
     if (!photon_lobe_sample(&lobe, vec2(random_float(random.x[1]), random_float(random.x[2])), &w))
         return;

@@ -2,16 +2,14 @@
  * subpaths draw directions by them (path/caustic.h).
  *
  * A photon knows how the direction towards its light changes with the place, the light's point kept, and with the
- * light's point, the place kept, so that it predicts the directions that show the light from places nearby. The
- * photons are sorted by the Morton code of their cell (Morton 1966) in a grid of PHOTON_CELLS cells per side; a cell
- * of a coarser level is a contiguous range of them, which directories shorten the search for. The host makes them
- * before a rendering (host/render/photon_map.c). */
+ * light's point, the place kept, so that it predicts the directions that show the light from places nearby. The host
+ * makes them before a rendering (host/render/photon_map.c). */
 #ifndef TWINLIGHT_PATH_PHOTON_H
 #define TWINLIGHT_PATH_PHOTON_H
 
-#include "layout/photon_map.h"
 #include "layout/scene_view.h"
 #include "math/warp.h"
+#include "path/photon_cells.h"
 
 /* A cell of which at least PHOTONS_LEAST photons are in one of the eight cells of the next level is too coarse for a
  * place in that one. Of more than PHOTONS_MOST photons of a cell, evenly spaced ones stand for all. */
@@ -30,10 +28,15 @@
 #define PHOTONS_BESIDE_MOST 4u
 #define PHOTONS_BESIDE_WEIGHT 0.5f
 
+/* A group is drawn by in proportion to how densely its photons lie around a place, which is what its light brings
+ * there, plus this part of that of all groups together: a few photons tell their density badly. */
+#define PHOTONS_GROUP_LEAST (1.0f / 32.0f)
+
 /* Photons of a group in a cell: `number` of them, first, first + every, ... */
 typedef struct PhotonSet {
     uint first, every, number;
     uint shift; /* the cell has 2^shift finest ones */
+    float weight; /* if it has any */
 } PhotonSet;
 
 /* Those for a place: for each group two sets, of the cell that it is in and of the one beside that. */
@@ -55,167 +58,17 @@ typedef struct PhotonLobe {
     uint light; /* PHOTON_LIGHT */
 } PhotonLobe;
 
-/* The code of no cell. */
-#define PHOTON_OUTSIDE (~(ulong)0u)
-
-/* x, of 21 bits at most, with two zeros above each bit. */
-SHARED_FUNCTION ulong photon_code_part(uint x)
-{
-    ulong wide = x;
-    wide = (wide | wide << 32) & 0x001f00000000ffffu;
-    wide = (wide | wide << 16) & 0x001f0000ff0000ffu;
-    wide = (wide | wide << 8) & 0x100f00f00f00f00fu;
-    wide = (wide | wide << 4) & 0x10c30c30c30c30c3u;
-    return (wide | wide << 2) & 0x1249249249249249u;
-}
-
-/* The Morton code of a cell. */
-SHARED_FUNCTION ulong photon_code_of(uint x, uint y, uint z)
-{
-    return photon_code_part(x) | photon_code_part(y) << 1 | photon_code_part(z) << 2;
-}
-
-/* p in units of the finest cells. */
-SHARED_FUNCTION Vec3 photon_cell(PhotonParams params, Vec3 p)
-{
-    return vec3_scale(vec3_sub(p, params.origin), params.cells_per_unit);
-}
-
-/* The Morton code of the finest cell that p is in; PHOTON_OUTSIDE outside the grid. */
-SHARED_FUNCTION ulong photon_code(PhotonParams params, Vec3 p)
-{
-    Vec3 cell = photon_cell(params, p);
-    float most = (float)PHOTON_CELLS;
-    if (!(cell.x >= 0.0f && cell.y >= 0.0f && cell.z >= 0.0f && cell.x < most && cell.y < most && cell.z < most))
-        return PHOTON_OUTSIDE;
-    return photon_code_of((uint)cell.x, (uint)cell.y, (uint)cell.z);
-}
-
-/* The code of photon `index`. */
-SHARED_FUNCTION ulong photon_code_at(__global const uint *photons, uint index)
-{
-    return photons[2u * index] | (ulong)photons[2u * index + 1u] << 32;
-}
-
-/* Where the words of photon `index` of so many begin; of photon `count`, the end of all. */
-SHARED_FUNCTION size_t photon_record_at(uint count, uint index)
-{
-    return (size_t)count * PHOTON_CODE_WORDS + (size_t)index * PHOTON_WORDS;
-}
-
-SHARED_FUNCTION __global const uint *photon_record(__global const uint *photons, uint count, uint index)
-{
-    return photons + photon_record_at(count, index);
-}
-
-/* The first of the sorted codes first ... last - 1 that is not below `code`. */
-SHARED_FUNCTION uint photon_find(__global const uint *photons, uint first, uint last, ulong code)
-{
-    while (first < last) {
-        uint middle = first + (last - first) / 2u;
-        if (photon_code_at(photons, middle) < code)
-            first = middle + 1u;
-        else
-            last = middle;
-    }
-    return first;
-}
-
-/* Of so many photons it takes less time to look at all than to search. */
-#define PHOTONS_COUNTED 32u
-
-/* Narrows the photons *first ... *last - 1 to those whose codes are cell ... next - 1. */
-SHARED_FUNCTION void photon_narrow(__global const uint *photons, ulong cell, ulong next, uint *first, uint *last)
-{
-    uint begin = *first, end = *last, before = 0u, within = 0u;
-    if (end - begin > PHOTONS_COUNTED) {
-        *first = photon_find(photons, begin, end, cell);
-        *last = photon_find(photons, *first, end, next);
-        return;
-    }
-    for (uint i = begin; i < end; ++i) {
-        ulong code = photon_code_at(photons, i);
-        before += code < cell ? 1u : 0u;
-        within += code < next ? 1u : 0u;
-    }
-    *first = begin + before;
-    *last = begin + within;
-}
-
-/* The least range *first ... *last - 1 of the group's photons known to have those of the codes low ... high: from the
- * directory, if there is one. */
-SHARED_FUNCTION void photon_known(PhotonParams params, __global const uint *photons, uint group, ulong low, ulong high,
-                                  uint *first, uint *last)
-{
-    *first = params.first[group];
-    *last = params.first[group + 1u];
-    if (params.directory_level > 0u) {
-        uint entry_shift = 3u * (PHOTON_LEVELS - params.directory_level);
-        __global const uint *directory = photons + params.directory[group];
-        *first = directory[(uint)(low >> entry_shift)];
-        *last = directory[(uint)(high >> entry_shift) + 1u];
-    }
-}
-
-/* The photons *first ... *last - 1 of the group in the cell of 2^shift finest ones from `cell` on. */
-SHARED_FUNCTION void photon_cell_find(PhotonParams params, __global const uint *photons, uint group, ulong cell,
-                                      uint shift, uint *first, uint *last)
-{
-    ulong next = cell + ((ulong)1u << shift);
-    photon_known(params, photons, group, cell, next - 1u, first, last);
-    if (params.directory_level == 0u || shift < 3u * (PHOTON_LEVELS - params.directory_level))
-        photon_narrow(photons, cell, next, first, last);
-}
-
-/* The photons first ... last - 1, or at most `most` that stand for them. */
+/* The photons first ... last - 1, or at most `most` that stand for them. Their weight is their number per area of the
+ * cell's face, since they lie on surfaces. */
 SHARED_FUNCTION PhotonSet photon_set_of(uint first, uint last, uint most, uint shift)
 {
-    PhotonSet set = {first, 1u, 0u, shift};
+    float side = (float)(1u << shift / 3u);
+    PhotonSet set = {first, 1u, 0u, shift, (float)(last - first) / (side * side)};
     if (first == last)
         return set;
     set.every = (last - first + most - 1u) / most;
     set.number = (last - first + set.every - 1u) / set.every;
     return set;
-}
-
-/* The first photon of a group that is not before the code. */
-SHARED_FUNCTION uint photon_position(PhotonParams params, __global const uint *photons, uint group, ulong code)
-{
-    uint first, last;
-    photon_known(params, photons, group, code, code, &first, &last);
-    return photon_find(photons, first, last, code);
-}
-
-/* The least cell that holds two codes has 2^shift finest ones. differ: the bits in which they differ. */
-SHARED_FUNCTION uint photon_shift(ulong differ)
-{
-    uint shift = 0u;
-    for (; differ != 0u; differ >>= 3)
-        shift += 3u;
-    return shift;
-}
-
-/* As photon_find, of codes from which on all others are not below `code`; searches from there, in steps that double,
- * since it is seldom far. */
-SHARED_FUNCTION uint photon_find_before(__global const uint *photons, uint first, uint from, ulong code)
-{
-    uint step = 1u;
-    while (from - first >= step && photon_code_at(photons, from - step) >= code) {
-        from -= step;
-        step *= 2u;
-    }
-    return photon_find(photons, from - first >= step ? from - step + 1u : first, from, code);
-}
-
-/* The same, of codes before which all others are below `code`. */
-SHARED_FUNCTION uint photon_find_behind(__global const uint *photons, uint from, uint last, ulong code)
-{
-    uint step = 1u;
-    while (last - from >= step && photon_code_at(photons, from + step - 1u) < code) {
-        from += step;
-        step *= 2u;
-    }
-    return photon_find(photons, from, last - from >= step ? from + step - 1u : last, code);
 }
 
 /* The photons of a group, which has some, for a place with the code `code`: those of the cell of the usual level that
@@ -281,10 +134,21 @@ SHARED_FUNCTION PhotonSet photon_set_beside(PhotonParams params, __global const 
     return set;
 }
 
-/* The weight of a set that has any photons. */
-SHARED_FUNCTION float photon_set_weight(PhotonParams params, uint set)
+/* Adds to the weights of the groups' own sets what each has at least, sets those of the sets beside, and adds up those
+ * of sets that have photons. */
+SHARED_FUNCTION void photon_sets_weigh(PhotonSets *found)
 {
-    return params.weight[set / 2u] * (set % 2u == 0u ? 1.0f : PHOTONS_BESIDE_WEIGHT);
+    float sum = 0.0f;
+    for (uint group = 0u; group < PHOTON_GROUPS; ++group)
+        sum += found->sets[2u * group].weight;
+    found->weight = 0.0f;
+    for (uint set = 0u; set < PHOTON_SETS; ++set) {
+        PhotonSet own = found->sets[set];
+        own.weight = set % 2u == 0u ? own.weight + PHOTONS_GROUP_LEAST * sum
+                                    : PHOTONS_BESIDE_WEIGHT * found->sets[set - 1u].weight;
+        found->sets[set] = own;
+        found->weight += own.number > 0u ? own.weight : 0.0f;
+    }
 }
 
 /* The photons for the place p. */
@@ -292,7 +156,6 @@ SHARED_FUNCTION PhotonSets photon_sets(PhotonParams params, __global const uint 
 {
     PhotonSets found;
     ulong code = params.count > 0u ? photon_code(params, p) : PHOTON_OUTSIDE;
-    found.weight = 0.0f;
     for (uint group = 0u; group < PHOTON_GROUPS; ++group) {
         PhotonSet own = photon_set_of(0u, 0u, 1u, 0u), beside = own;
         if (code != PHOTON_OUTSIDE && params.first[group] < params.first[group + 1u]) {
@@ -302,27 +165,24 @@ SHARED_FUNCTION PhotonSets photon_sets(PhotonParams params, __global const uint 
         found.sets[2u * group] = own;
         found.sets[2u * group + 1u] = beside;
     }
-    for (uint set = 0u; set < PHOTON_SETS; ++set)
-        if (found.sets[set].number > 0u)
-            found.weight += photon_set_weight(params, set);
+    photon_sets_weigh(&found);
     return found;
 }
 
 /* A photon of the sets, of which there is one: its set by weight, in that uniformly. u: uniform in [0, 1). */
-SHARED_FUNCTION uint photon_choose(PhotonParams params, const PhotonSets *found, float u)
+SHARED_FUNCTION uint photon_choose(const PhotonSets *found, float u)
 {
     uint chosen = 0u;
     u *= found->weight;
     for (uint i = 0u; i < PHOTON_SETS; ++i) {
         PhotonSet set = found->sets[i];
-        float weight = photon_set_weight(params, i);
         if (set.number == 0u)
             continue;
-        float part = float_clamp(u / weight, 0.0f, 1.0f);
+        float part = float_clamp(u / set.weight, 0.0f, 1.0f);
         uint k = (uint)(part * (float)set.number);
         if (u >= 0.0f) /* the last set whose share begins at u or below */
             chosen = set.first + (k < set.number ? k : set.number - 1u) * set.every;
-        u -= weight;
+        u -= set.weight;
     }
     return chosen;
 }
@@ -407,7 +267,7 @@ SHARED_FUNCTION float photon_density(PhotonParams params, __global const uint *p
                 sum += photon_lobe_density(&lobe, w);
         }
         if (sum > 0.0f)
-            density += photon_set_weight(params, i) / found->weight * (sum / (float)set.number);
+            density += set.weight / found->weight * (sum / (float)set.number);
     }
     return density;
 }

@@ -16,6 +16,7 @@ SHARED_FILES += \
 	shared/path/path_random.h \
 	shared/path/path_state.h \
 	shared/path/photon.h \
+	shared/path/photon_cells.h \
 	shared/path/opening_path.h \
 	shared/path/photon_path.h \
 	shared/path/strategy.h

@@ -54,13 +54,10 @@ START_TEST(test_rest_of_draws)
         uint delta, last, draws;
     } cases[] = {{0x4u, 2, 2}, {0xau, 3, 2}, {0xeu, 4, 0}, {0x1cu, 4, 2}, {0x2eu, 5, 2}, {0x5eu, 6, 1}, {0x8u, 3, 2}};
     uint words[PHOTON_CODE_WORDS + PHOTON_WORDS] = {0}, paths[RECEIVER_WORDS] = {0};
-    FrameParams frame = {.pass.stride = 1,
-                         .photons = {.count = 1,
-                                     .everywhere = 1,
-                                     .first = {0, 1, 1, 1, 1},
-                                     .level = {1, 1, 1, 1},
-                                     .weight = {1.0f},
-                                     .cells_per_unit = 1.0f}};
+    FrameParams frame = {
+        .pass.stride = 1,
+        .photons = {
+            .count = 1, .everywhere = 1, .first = {0, 1, 1, 1, 1}, .level = {1, 1, 1, 1}, .cells_per_unit = 1.0f}};
     const SceneView scene = {.frame = &frame, .photons = words};
     const float p = 0.01f, spread = 0.1f;
     uint *photon = words + PHOTON_CODE_WORDS;
@@ -123,8 +120,7 @@ START_TEST(test_density)
     enum { COUNT = 5 };
     static const uint lights[COUNT] = {NONE, 2, NONE, 7, NONE};
     uint words[COUNT * (PHOTON_CODE_WORDS + PHOTON_WORDS)] = {0};
-    const PhotonParams params = {
-        .count = COUNT, .first = {0, COUNT, COUNT, COUNT, COUNT}, .level = {1, 1, 1, 1}, .weight = {1.0f}};
+    const PhotonParams params = {.count = COUNT, .first = {0, COUNT, COUNT, COUNT, COUNT}, .level = {1, 1, 1, 1}};
     const float spread = 0.1f;
     for (uint i = 0; i < COUNT; ++i) {
         uint *photon = words + COUNT * PHOTON_CODE_WORDS + i * PHOTON_WORDS;
@@ -132,7 +128,7 @@ START_TEST(test_density)
         photon[PHOTON_SPREAD] = photon[PHOTON_SPREAD + 2] = float_bits(spread);
         photon[PHOTON_LIGHT] = lights[i];
     }
-    const PhotonSets found = {{{0, 1, COUNT, 0}}, 1.0f};
+    const PhotonSets found = {{{0, 1, COUNT, 0, 1.0f}}, 1.0f};
     const Vec3 p = vec3(0.0f, 0.0f, 0.0f), w = vec3(0.0f, 0.0f, 1.0f);
     const double wide = (double)PHOTON_WIDE_PART, width = (double)PHOTON_WIDE,
                  lobe = (1.0 - wide + wide / (width * width)) / (M_PI * (double)(spread * spread));
@@ -171,11 +167,11 @@ static int codes_compare(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-/* Sorts the codes, and puts them where photons have them. */
-static void codes_put(ulong *codes, uint count, uint *words)
+/* Sorts the codes first ... end - 1, a group's, and puts them where photons have them. */
+static void codes_put(ulong *codes, uint first, uint end, uint *words)
 {
-    qsort(codes, count, sizeof *codes, codes_compare);
-    for (uint i = 0; i < count; ++i) {
+    qsort(codes + first, end - first, sizeof *codes, codes_compare);
+    for (uint i = first; i < end; ++i) {
         words[PHOTON_CODE_WORDS * i] = (uint)codes[i];
         words[PHOTON_CODE_WORDS * i + 1] = (uint)(codes[i] >> 32);
     }
@@ -207,7 +203,7 @@ START_TEST(test_grid)
     unsigned state = 11;
     for (int i = 0; i < COUNT; ++i)
         codes[i] = photon_code(params, grid_place(&state, i));
-    codes_put(codes, COUNT, words);
+    codes_put(codes, 0, COUNT, words);
     int coarser = 0, fine = 0;
     for (int i = 0; i < 4000; ++i) {
         const ulong code = photon_code(params, grid_place(&state, i));
@@ -243,7 +239,7 @@ START_TEST(test_beside)
     static ulong codes[SIDE * SIDE];
     static uint words[SIDE * SIDE * (PHOTON_CODE_WORDS + PHOTON_WORDS)];
     const uint level = 5;
-    PhotonParams params = {.level = {4, 1, 1, 1}, .weight = {0.7f}, .cells_per_unit = (float)PHOTON_CELLS};
+    PhotonParams params = {.level = {4, 1, 1, 1}, .cells_per_unit = (float)PHOTON_CELLS};
     for (int i = 0; i < SIDE * SIDE; ++i) {
         const float x = (float)(i % SIDE) / (float)SIDE, y = (float)(i >> 6) / (float)SIDE;
         if (x < 0.25f || x >= 0.3125f || y < 0.25f || y >= 0.3125f)
@@ -251,7 +247,7 @@ START_TEST(test_beside)
     }
     for (int group = 1; group <= (int)PHOTON_GROUPS; ++group)
         params.first[group] = params.count;
-    codes_put(codes, params.count, words);
+    codes_put(codes, 0, params.count, words);
     for (uint i = 0; i < params.count; ++i) {
         uint *photon = words + params.count * PHOTON_CODE_WORDS + i * PHOTON_WORDS;
         photon[PHOTON_DIRECTION + 2] = float_bits(1.0f);
@@ -281,12 +277,11 @@ START_TEST(test_beside)
             ck_assert(cell_has(codes[own->first + k * own->every], photon_code(params, p), level));
         for (uint k = 0; k < beside->number; ++k)
             ck_assert_msg(cell_has(codes[beside->first + k * beside->every], cell, level), "case %zu", i);
-        TEST_NEAR(found.weight, 0.7 * (1.0 + (double)PHOTONS_BESIDE_WEIGHT), 1e-6);
         /* what is drawn has the frequencies that the density has */
         int drawn[2] = {0}, of_light = 0;
         double part = 0.0;
         for (int k = 0; k < 3000; ++k) {
-            const uint photon = photon_choose(params, &found, ((float)k + 0.5f) / 3000.0f);
+            const uint photon = photon_choose(&found, ((float)k + 0.5f) / 3000.0f);
             ++drawn[cell_has(codes[photon], cell, level)];
             of_light += photon_record(words, params.count, photon)[PHOTON_LIGHT] == 1;
         }
@@ -300,6 +295,47 @@ START_TEST(test_beside)
 }
 END_TEST
 
+/* A group of so many photons per unit of length along x and y on the plane z = 0, whose codes are put from *count
+ * on. */
+static void lattice_put(PhotonParams *params, int per_unit, ulong *codes)
+{
+    for (int i = 0; i < per_unit * per_unit; ++i) {
+        const float x = (float)(i % per_unit) / (float)per_unit, y = (float)(i / per_unit) / (float)per_unit;
+        codes[params->count++] = photon_code(*params, vec3(x, y, 0.0f));
+    }
+}
+
+/* Groups are drawn by in proportion to how densely their photons lie around a place, plus a part of all. */
+START_TEST(test_groups)
+{
+    static ulong codes[64 * 64 + 16 * 16 + 1];
+    PhotonParams params = {.level = {5, 3, 1, 1}, .cells_per_unit = (float)PHOTON_CELLS};
+    lattice_put(&params, 64, codes);
+    params.first[1] = params.count;
+    lattice_put(&params, 16, codes);
+    params.first[2] = params.count;
+    codes[params.count++] = photon_code(params, vec3(0.0f, 0.0f, 0.9f)); /* alone in a cell of half a unit */
+    params.first[3] = params.first[4] = params.count;
+    uint *words = calloc(params.count, (PHOTON_CODE_WORDS + PHOTON_WORDS) * sizeof *words);
+    ck_assert_ptr_nonnull(words);
+    for (int g = 0; g < 3; ++g)
+        codes_put(codes, params.first[g], params.first[g + 1], words);
+    const PhotonSets found = photon_sets(params, words, vec3(0.3f, 0.4f, 0.001f));
+    int drawn[3] = {0};
+    for (int k = 0; k < 10000; ++k) {
+        const uint photon = photon_choose(&found, ((float)k + 0.5f) / 10000.0f);
+        ++drawn[photon >= params.first[2] ? 2 : photon >= params.first[1] ? 1 : 0];
+    }
+    free(words);
+    /* per unit of area: two groups have photons beside, too */
+    const double density[3] = {64.0 * 64.0, 16.0 * 16.0, 1.0}, sum = 64.0 * 64.0 + 16.0 * 16.0 + 1.0,
+                 beside = 1.0 + (double)PHOTONS_BESIDE_WEIGHT, least = (double)PHOTONS_GROUP_LEAST * sum;
+    const double weights[3] = {beside * (density[0] + least), beside * (density[1] + least), density[2] + least};
+    for (int g = 0; g < 3; ++g)
+        TEST_NEAR(drawn[g], 10000.0 * weights[g] / (weights[0] + weights[1] + weights[2]), 3.0);
+}
+END_TEST
+
 TCase *photons_case(void)
 {
     TCase *photons = tcase_create("photons");
@@ -310,6 +346,7 @@ TCase *photons_case(void)
     tcase_add_test(photons, test_density);
     tcase_add_test(photons, test_grid);
     tcase_add_test(photons, test_beside);
+    tcase_add_test(photons, test_groups);
     tcase_add_test(photons, test_growth);
     return photons;
 }
