@@ -7,6 +7,7 @@
 #include "mmlt/tuning.h"
 #include "render/integrator.h"
 #include "render/layers.h"
+#include "render/photon_worth.h"
 
 #include <float.h>
 #include <math.h>
@@ -28,6 +29,27 @@ static uint sequences_of(const RenderRun *run)
     return render_layers_compare_halves(run->options->layers) ? REPLICAS : 1;
 }
 
+bool paths_draw_everywhere(double part, double all)
+{
+    return part > PHOTONS_EVERYWHERE_PART || (part > PHOTONS_EVERYWHERE_LEAST && part > PHOTONS_EVERYWHERE_SHARE * all);
+}
+
+/* Sets *everywhere: whether path tracing draws by photons at all receivers. Not with layers by depth: what a path draws
+ * at one vertex has several depths. */
+static bool everywhere_choose(const RenderRun *run, const Film *film, bool *everywhere, Error *error)
+{
+    const double part = run->photons_part;
+    double all = 0.0;
+    *everywhere = false;
+    if (film->depth_kinds != 0)
+        return true;
+    bool depends = part <= PHOTONS_EVERYWHERE_PART && paths_draw_everywhere(part, 0.0);
+    if (depends && !photon_map_part(run, true, &all, error))
+        return false;
+    *everywhere = run->options->chains.photons_everywhere || paths_draw_everywhere(part, all);
+    return true;
+}
+
 bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *film, bool direct_only, bool completes,
                           const Guide *guide, Error *error)
 {
@@ -42,9 +64,10 @@ bool paths_estimator_init(PathsEstimator *paths, const RenderRun *run, Film *fil
                               .sequences = sequences_of(run)};
     paths->frame.partition.split_direct = !direct_only;
     paths->shows_more = pt_shows_more(&paths->frame);
-    paths->frame.photons.everywhere = paths->complete_frame.photons.everywhere =
-        !direct_only && (run->options->chains.photons_everywhere || run->photons_part > PHOTONS_EVERYWHERE_PART) &&
-        film->depth_kinds == 0;
+    bool everywhere = false;
+    if (!direct_only && !everywhere_choose(run, film, &everywhere, error))
+        return false;
+    paths->frame.photons.everywhere = paths->complete_frame.photons.everywhere = everywhere;
     if (direct_only && paths->frame.path.max_depth >= CHAIN_DEPTH_MIN)
         paths->frame.path.max_depth = CHAIN_DEPTH_MIN - 1;
     return list_make(&paths->own, &paths->frame, integrator_pt(), STRATEGIES_PT, run, guide, error) &&

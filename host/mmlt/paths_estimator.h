@@ -31,6 +31,10 @@ typedef struct PathsEstimator {
     double seconds; /* that these took */
 } PathsEstimator;
 
+/* Whether path tracing beside chains draws by photons at all receivers (path/caustic_rest.h), if those where no light
+ * subpath can make the path bring `part` of the light, and all `all`, as photon_map_part says. */
+bool paths_draw_everywhere(double part, double all);
+
 /* Makes the lists. run->frame: as from render_frame, not yet changed for chains. film: the generation's. direct_only:
  * of paths that chains do not make. completes: `complete`, too. guide: for passes. Call paths_estimator_destroy even on
  * failure. */

@@ -46,8 +46,13 @@
 #define MMLT_PHOTONS_PER_SAMPLE 0.0625
 
 /* Path tracing draws by photons at all receivers, and is trusted with rare light, if those where no light subpath can
- * make the path bring more than this part of the light; docs/CAUSTICS.md. */
+ * make the path bring more than this part of the light ... */
 #define PHOTONS_EVERYWHERE_PART 0.05
+
+/* ... or more than this part of it, and than this part of what photons bring at all receivers: then much of the light
+ * that path tracing would hardly find is light that no other estimator finds either; docs/CAUSTICS.md. */
+#define PHOTONS_EVERYWHERE_LEAST 0.01
+#define PHOTONS_EVERYWHERE_SHARE 0.25
 
 /* Samples of path tracing per step of a chain: until variances are known, and if only direct light is wanted. */
 #define PATHS_FIRST 1.0

@@ -40,13 +40,12 @@ static void path_light_add(void *context, const uint *splats, uint count, uint s
     pthread_mutex_unlock(&light->mutex);
 }
 
-/* Renders one path of path tracing in each of `paths` pixels, by run->photons or without; luminance: of all pixels,
- * 0. */
-static bool paths_render(const RenderRun *run, uint paths, bool photons, float *luminance, Error *error)
+/* Renders one path of path tracing in each of `paths` pixels, by such photons; luminance: of all pixels, 0. */
+static bool paths_render(const RenderRun *run, uint paths, PhotonParams photons, float *luminance, Error *error)
 {
     PathLight light = {.luminance = luminance};
     FrameParams frame = pilot_frame(run, integrator_pt(), paths);
-    frame.photons = photons ? run->photons.params : (PhotonParams){0};
+    frame.photons = photons;
     pthread_mutex_init(&light.mutex, NULL);
     const SplatSink sink = {.splats = path_light_add, .context = &light, .whole = true};
     bool done = pilot_run(run, integrator_pt(), &frame, &sink, error);
@@ -75,16 +74,18 @@ static bool has_lights_without_extent(const PhotonMap *photons)
     return false;
 }
 
-bool photon_map_part(const RenderRun *run, double *part, Error *error)
+bool photon_map_part(const RenderRun *run, bool everywhere, double *part, Error *error)
 {
     size_t pixels = (size_t)run->frame.film.width * run->frame.film.height;
     uint paths = pixels < WORTH_PATHS ? (uint)pixels : WORTH_PATHS;
+    PhotonParams photons = run->photons.params;
     *part = 0.0;
-    if (run->photons.params.count == 0)
+    if (photons.count == 0)
         return true;
+    photons.everywhere = everywhere ? 1 : 0;
     float *luminance[2] = {calloc(pixels, sizeof(float)), calloc(pixels, sizeof(float))};
-    bool done = luminance[0] && luminance[1] ? paths_render(run, paths, true, luminance[0], error) &&
-                                                   paths_render(run, paths, false, luminance[1], error)
+    bool done = luminance[0] && luminance[1] ? paths_render(run, paths, photons, luminance[0], error) &&
+                                                   paths_render(run, paths, (PhotonParams){0}, luminance[1], error)
                                              : error_memory(error, 2 * pixels * sizeof(float), "a pilot of photons");
     if (done)
         *part = part_by_photons(luminance[0], luminance[1], pixels, paths);

@@ -298,7 +298,7 @@ bool render_openings_find(RenderRun *run, const Integrator *integrator, const Sc
 static bool photons_limit(void *context, uint *most, Error *error)
 {
     RenderRun *run = context;
-    if (!photon_map_part(run, &run->photons_part, error))
+    if (!photon_map_part(run, false, &run->photons_part, error))
         return false;
     *most = photon_map_most(*most, run->photons_part);
     return true;
@@ -314,7 +314,7 @@ bool render_photons_make(RenderRun *run, const Integrator *integrator, const Sce
         return false;
     run->photons.params.everywhere = paths;
     bool asked_for = run->options->photons != PHOTONS_DEFAULT || run->resumed;
-    if (!paths && !photon_map_part(run, &run->photons_part, error))
+    if (!paths && !photon_map_part(run, false, &run->photons_part, error))
         return false;
     if (!paths && !asked_for && !photon_map_worth(&run->photons, run->photons_part)) {
         log_message(LOG_INFO, "caustic photons bring too little of the light: rendering without");

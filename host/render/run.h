@@ -24,7 +24,7 @@ typedef struct RenderRun {
     const Guide *guide; /* the scene's */
     bool hidden_light; /* scene_hides_light */
     PhotonMap photons;
-    double photons_part; /* photon_map_part; 0: not asked for */
+    double photons_part; /* photon_map_part where no light subpath can make the path; 0: not asked for */
     Film *film;
     Film *halves; /* two films of which `film` is the sum, by render_run_gather; NULL: it is added to itself */
     uint64_t crop_pixels;

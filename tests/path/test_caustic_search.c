@@ -5,6 +5,7 @@
 #include "support/test_util.h"
 
 #include "backend_cpu.h"
+#include "mmlt/paths_estimator.h"
 #include "path/photon.h"
 #include "render/photon_map.h"
 #include "render/photon_worth.h"
@@ -64,25 +65,43 @@ START_TEST(test_found_more)
 }
 END_TEST
 
-/* The photons of a scene, of a seed. */
-static void photons_make(const char *text, uint count, PhotonLimit limit, void *context, PhotonMap *map)
+/* A scene whose photons are made, by a seed. */
+typedef struct PhotonScene {
+    Scene scene;
+    RenderOptions options;
+    Film film;
+    RenderRun run;
+} PhotonScene;
+
+static void photon_scene_open(PhotonScene *opened, const char *text)
 {
     const RenderSetup setup = {.text = text, .threads = 2};
-    const RenderOptions options = {.samples = 1, .max_depth = 5, .seed = 3};
-    Film film = {.threads = 2};
-    Scene scene;
     Error error = {0};
-    fixture_scene(&setup, &scene);
-    RenderRun run = {.interface = backend_cpu(),
-                     .backend = fixture_open(&setup, &scene, &error),
-                     .options = &options,
-                     .film = &film};
-    ck_assert(run.backend != NULL);
-    render_frame(integrator_pt(), &scene, &options, &run.frame);
-    bool made = photon_map_make(&run, &scene, count, limit, context, map, &error);
+    *opened = (PhotonScene){.options = {.samples = 1, .max_depth = 5, .seed = 3}, .film = {.threads = 2}};
+    fixture_scene(&setup, &opened->scene);
+    opened->run = (RenderRun){.interface = backend_cpu(),
+                              .backend = fixture_open(&setup, &opened->scene, &error),
+                              .options = &opened->options,
+                              .film = &opened->film};
+    ck_assert(opened->run.backend != NULL);
+    render_frame(integrator_pt(), &opened->scene, &opened->options, &opened->run.frame);
+}
+
+static void photon_scene_close(PhotonScene *opened)
+{
+    opened->run.interface->close(opened->run.backend);
+    scene_destroy(&opened->scene);
+}
+
+/* The photons of a scene. */
+static void photons_make(const char *text, uint count, PhotonLimit limit, void *context, PhotonMap *map)
+{
+    PhotonScene opened;
+    Error error = {0};
+    photon_scene_open(&opened, text);
+    bool made = photon_map_make(&opened.run, &opened.scene, count, limit, context, map, &error);
     ck_assert_msg(made, "%s", error.message);
-    run.interface->close(run.backend);
-    scene_destroy(&scene);
+    photon_scene_close(&opened);
 }
 
 /* A PhotonLimit of 100000; *context: how often it was asked for. */
@@ -120,6 +139,37 @@ START_TEST(test_limit)
     }
     ck_assert_uint_eq(photon_map_most(655360, 0.06), 655360);
     ck_assert_uint_eq(photon_map_most(655360, 0.04), 81920);
+}
+END_TEST
+
+#define BALL(radius) "AttributeBegin Translate 0 -0.6 0 Shape \"sphere\" \"float radius\" " radius " AttributeEnd\n"
+#define LIT BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.05", "1000")
+
+/* What photons bring at all receivers, and where no light subpath can make the path: of the caustic of a ball of
+ * glass only what is seen through the ball, of clay in the ball all. Path tracing beside chains draws by them at all
+ * receivers where the second is much of the light, or not little of it and of the first. */
+START_TEST(test_part)
+{
+    static const char *const texts[] = {LIT SMOOTH_GLASS BALL("0.35"), LIT BALL("0.25") SMOOTH_GLASS BALL("0.35")};
+    double part[2], all[2];
+    for (int i = 0; i < 2; ++i) {
+        PhotonScene opened;
+        Error error = {0};
+        photon_scene_open(&opened, texts[i]);
+        ck_assert(photon_map_make(&opened.run, &opened.scene, 8192, NULL, NULL, &opened.run.photons, &error));
+        ck_assert(photon_map_part(&opened.run, false, &part[i], &error));
+        ck_assert(photon_map_part(&opened.run, true, &all[i], &error));
+        printf("scene %d: photons bring %.5f, %.5f at all receivers\n", i, part[i], all[i]);
+        photon_map_destroy(&opened.run.photons);
+        photon_scene_close(&opened);
+    }
+    ck_assert_double_lt(part[0], 0.001);
+    ck_assert_double_gt(all[0], 0.002);
+    ck_assert_double_gt(part[1], 0.5 * all[1]);
+    ck_assert(paths_draw_everywhere(0.06, 1.0));
+    ck_assert(paths_draw_everywhere(0.02, 0.06));
+    ck_assert(!paths_draw_everywhere(0.02, 0.1));
+    ck_assert(!paths_draw_everywhere(0.005, 0.005));
 }
 END_TEST
 
@@ -244,6 +294,7 @@ TCase *search_case(void)
     tcase_add_test(search, test_found_more);
     tcase_add_test(search, test_limit);
     tcase_add_test(search, test_default_limit);
+    tcase_add_test(search, test_part);
     tcase_add_test(search, test_wide_world);
     tcase_add_test(search, test_evenly);
     return search;
