@@ -277,6 +277,9 @@ START_TEST(test_beside)
             ck_assert(cell_has(codes[own->first + k * own->every], photon_code(params, p), level));
         for (uint k = 0; k < beside->number; ++k)
             ck_assert_msg(cell_has(codes[beside->first + k * beside->every], cell, level), "case %zu", i);
+        const double side = (double)(1u << (PHOTON_LEVELS - level)),
+                     weight = 4.0 / (side * side) * (1.0 + (double)PHOTONS_GROUP_LEAST);
+        TEST_NEAR((double)found.weight / weight, 1.0 + (double)PHOTONS_BESIDE_WEIGHT, 1e-6);
         /* what is drawn has the frequencies that the density has */
         int drawn[2] = {0}, of_light = 0;
         double part = 0.0;
@@ -295,8 +298,7 @@ START_TEST(test_beside)
 }
 END_TEST
 
-/* A group of so many photons per unit of length along x and y on the plane z = 0, whose codes are put from *count
- * on. */
+/* Adds photons, so many per unit of length along x and y on the plane z = 0, to params->count and their codes. */
 static void lattice_put(PhotonParams *params, int per_unit, ulong *codes)
 {
     for (int i = 0; i < per_unit * per_unit; ++i) {
@@ -314,7 +316,8 @@ START_TEST(test_groups)
     params.first[1] = params.count;
     lattice_put(&params, 16, codes);
     params.first[2] = params.count;
-    codes[params.count++] = photon_code(params, vec3(0.0f, 0.0f, 0.9f)); /* alone in a cell of half a unit */
+    codes[params.count++] =
+        photon_code(params, vec3(0.0f, 0.0f, 0.9f)); /* shares no cell but the whole grid with the place below */
     params.first[3] = params.first[4] = params.count;
     uint *words = calloc(params.count, (PHOTON_CODE_WORDS + PHOTON_WORDS) * sizeof *words);
     ck_assert_ptr_nonnull(words);

@@ -145,18 +145,39 @@ END_TEST
 #define BALL(radius) "AttributeBegin Translate 0 -0.6 0 Shape \"sphere\" \"float radius\" " radius " AttributeEnd\n"
 #define LIT BD_BEGIN BD_GREY BD_FLOOR BALL_LAMP("0.05", "1000")
 
+/* Whether path tracing beside chains draws by the scene's photons at all receivers, if those that no light subpath can
+ * serve bring `part` of the light. */
+static bool draws_everywhere(PhotonScene *opened, double part, uint depth_kinds)
+{
+    Film film = {.depth_kinds = depth_kinds};
+    PathsEstimator paths;
+    Error error = {0};
+    opened->run.photons_part = part;
+    opened->run.frame.photons = opened->run.photons.params;
+    ck_assert(paths_estimator_init(&paths, &opened->run, &film, false, false, NULL, &error));
+    paths_estimator_destroy(&paths);
+    return paths.frame.photons.everywhere != 0;
+}
+
 /* What photons bring at all receivers, and where no light subpath can make the path: of the caustic of a ball of
- * glass only what is seen through the ball, of clay in the ball all. Path tracing beside chains draws by them at all
- * receivers where the second is much of the light, or not little of it and of the first. */
+ * glass only what is seen through the ball, of clay in the ball all, and of a lamp in glass most of the light, but
+ * nothing that a light subpath cannot bring. Path tracing beside chains draws by them at all receivers where the second
+ * is much of the light, or not little of it and of the first; not with layers by depth. */
 START_TEST(test_part)
 {
-    static const char *const texts[] = {LIT SMOOTH_GLASS BALL("0.35"), LIT BALL("0.25") SMOOTH_GLASS BALL("0.35")};
-    double part[2], all[2];
-    for (int i = 0; i < 2; ++i) {
+    static const char *const texts[] = {
+        LIT SMOOTH_GLASS BALL("0.35"), LIT BALL("0.25") SMOOTH_GLASS BALL("0.35"),
+        LIT SMOOTH_GLASS "AttributeBegin Translate 1 2 -1 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"};
+    double part[3], all[3];
+    for (int i = 0; i < 3; ++i) {
         PhotonScene opened;
         Error error = {0};
         photon_scene_open(&opened, texts[i]);
         ck_assert(photon_map_make(&opened.run, &opened.scene, 8192, NULL, NULL, &opened.run.photons, &error));
+        ck_assert(draws_everywhere(&opened, 0.02, 0) == (i != 2));
+        ck_assert(draws_everywhere(&opened, 0.06, 0));
+        ck_assert(!draws_everywhere(&opened, 0.06, 1));
+        ck_assert(!draws_everywhere(&opened, 0.005, 0));
         ck_assert(photon_map_part(&opened.run, false, &part[i], &error));
         ck_assert(photon_map_part(&opened.run, true, &all[i], &error));
         printf("scene %d: photons bring %.5f, %.5f at all receivers\n", i, part[i], all[i]);
@@ -166,6 +187,8 @@ START_TEST(test_part)
     ck_assert_double_lt(part[0], 0.001);
     ck_assert_double_gt(all[0], 0.002);
     ck_assert_double_gt(part[1], 0.5 * all[1]);
+    ck_assert_double_lt(part[2], 0.01 * all[2]);
+    ck_assert_double_gt(all[2], 0.2);
     ck_assert(paths_draw_everywhere(0.06, 1.0));
     ck_assert(paths_draw_everywhere(0.02, 0.06));
     ck_assert(!paths_draw_everywhere(0.02, 0.1));
